@@ -1,0 +1,2 @@
+//! The `pointillist` binary.
+fn main() {}

@@ -1,0 +1,1 @@
+//! The accumulated picture and the files it is written to.

@@ -1,0 +1,1 @@
+//! Pointillist's Vulkan layer: devices, buffers, images, kernels and the recorder.

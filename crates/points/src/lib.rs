@@ -1,0 +1,1 @@
+//! Point sets: readers, neighbours, local polynomials and the uniform grid.

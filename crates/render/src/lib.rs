@@ -1,0 +1,1 @@
+//! The frontend: plans a render and drives the passes on a device.

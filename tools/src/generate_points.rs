@@ -1,0 +1,2 @@
+//! Generates the point sets of the scenes.
+fn main() {}
