@@ -1,0 +1,228 @@
+//! The checked scene, as the renderer takes it.
+//!
+//! Ranges stated here hold for every value that came from a file: `keys.rs` is where they are set.
+
+use crate::Transform;
+use std::path::PathBuf;
+
+/// What to render. Lengths are scene units, colours linear RGB with Rec. 709 primaries.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Scene {
+    /// The view; `None` means that the renderer frames the objects.
+    pub camera: Option<Camera>,
+    /// Size and sampling of the picture.
+    pub image: ImageSettings,
+    /// How rays are followed.
+    pub render: RenderSettings,
+    /// What rays that hit nothing see.
+    pub background: Background,
+    /// The lights, 0 to 1024.
+    pub lights: Vec<Light>,
+    /// The objects, 1 to 65536; an object's place here is its index in the picture.
+    pub objects: Vec<Object>,
+}
+
+/// A pinhole camera. `eye` and `target` differ, and `up` is not parallel to the line of sight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// World position, each -1e15 to 1e15.
+    pub eye: [f64; 3],
+    /// World position in the middle of the picture, each -1e15 to 1e15.
+    pub target: [f64; 3],
+    /// World direction that is upwards in the picture, any length from 1e-12.
+    pub up: [f64; 3],
+    /// Angle between the lower and the upper edge in degrees, 0.001 to 179.
+    pub vertical_fov: f64,
+}
+
+/// Size and sampling of the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ImageSettings {
+    /// Width and height in pixels, each 1 to 16384.
+    pub size: [u32; 2],
+    /// Rays a pixel, 1 to 65536. 1 is a ray through each pixel's centre.
+    pub samples: u32,
+    /// Leave the background out and premultiply the colours by coverage.
+    pub transparent: bool,
+}
+
+/// How rays are followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RenderSettings {
+    /// Surface interactions after the primary hit, 0 to 1024.
+    pub max_bounces: u32,
+    /// What glass does with a ray that it both reflects and refracts.
+    pub fresnel: Fresnel,
+    /// Cells a ray may cross in one pass; 0 lets the device decide. Changes no pixel.
+    pub cells_per_pass: u32,
+    /// Where the ray state lives. Changes no pixel.
+    pub ray_loop: RayLoop,
+    /// Seed of everything that is random.
+    pub seed: u32,
+    /// Cells along the grid's longest axis, 1 to 1024; 0 is chosen from the points.
+    pub grid_resolution: u32,
+}
+
+/// What glass does with a ray that it both reflects and refracts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fresnel {
+    /// Follow the refracted ray only.
+    Transmit,
+    /// Choose one of the two at random with the Fresnel probability.
+    Sample,
+}
+
+/// Where the ray state lives between passes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RayLoop {
+    /// Four ping-pong storage images.
+    Images,
+    /// Live rays compacted, in buffers.
+    Queue,
+    /// Whichever the device runs faster.
+    Auto,
+}
+
+/// What rays that hit nothing see. It lights nothing else.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Background {
+    /// Radiance, each 0 to 1e15.
+    pub color: [f64; 3],
+}
+
+/// A light. Every surface blocks it fully.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Light {
+    /// Light from infinitely far away.
+    Directional {
+        /// The way the light travels, any length from 1e-12; not normalised.
+        direction: [f64; 3],
+        /// On a surface that faces the light, W m⁻², each 0 to 1e15.
+        irradiance: [f64; 3],
+    },
+    /// Light from a point, equal in all directions.
+    Point {
+        /// World position, each -1e15 to 1e15.
+        position: [f64; 3],
+        /// Radiant intensity I, W sr⁻¹, each 0 to 1e15: irradiance is I/r².
+        intensity: [f64; 3],
+    },
+}
+
+/// One point set with its place, surface and material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Object {
+    /// Name in messages and statistics; the stem of the point file unless the scene gives one.
+    pub name: String,
+    /// The point file, resolved against the scene file's folder.
+    pub points: PathBuf,
+    /// The point file as the scene file names it, for headers: it says nothing about the machine.
+    pub points_as_written: String,
+    /// From the file's coordinates to the world's.
+    pub transform: Transform,
+    /// How the surface is fitted.
+    pub surface: Surface,
+    /// How the surface scatters light.
+    pub material: Material,
+}
+
+/// How the surface is fitted (docs/method.md, section 1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surface {
+    /// Nearest other points of a fit, 3 to 64.
+    pub neighbors: u32,
+    /// Which terms the polynomial has.
+    pub polynomial: Polynomial,
+    /// The length h that weights and trust radii are measured by.
+    pub feature_size: FeatureSize,
+    /// Trust radius over feature size, b/h, 0.5 to 1.
+    pub trust: f64,
+}
+
+/// Which terms a point's polynomial has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Polynomial {
+    /// A x² + B y² + C xy + D + E x + F y.
+    Full,
+    /// A x² + B y² + C xy + D, as in the paper.
+    Incomplete,
+}
+
+/// The length h that weights and trust radii are measured by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FeatureSize {
+    /// Each point's distance to its farthest neighbour of the fit.
+    Adaptive,
+    /// One length for the object in scene units, 1e-12 to 1e15.
+    Constant(f64),
+}
+
+/// How a surface scatters light. Diffuse (Lambert) is what is built.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// The share of light that is scattered back.
+    pub albedo: Albedo,
+}
+
+/// Where a diffuse surface takes its albedo from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Albedo {
+    /// The points' own colours where they have them, else 0.8.
+    Default,
+    /// The points' own colours; a point set without is an error of the renderer's.
+    Points,
+    /// One colour, each 0 to 1.
+    Color([f64; 3]),
+}
+
+/// Which axis of a point file points upwards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Up {
+    /// +y, as in most models.
+    #[default]
+    Y,
+    /// +z, as in most surveys.
+    Z,
+}
+
+impl Default for ImageSettings {
+    fn default() -> Self {
+        Self { size: [640, 480], samples: 1, transparent: false }
+    }
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        Self {
+            max_bounces: 8,
+            fresnel: Fresnel::Transmit,
+            cells_per_pass: 0,
+            ray_loop: RayLoop::Auto,
+            seed: 0,
+            grid_resolution: 0,
+        }
+    }
+}
+
+impl Default for Background {
+    fn default() -> Self {
+        Self { color: [0.0; 3] }
+    }
+}
+
+impl Default for Surface {
+    fn default() -> Self {
+        Self {
+            neighbors: 16,
+            polynomial: Polynomial::Full,
+            feature_size: FeatureSize::Adaptive,
+            trust: 0.6,
+        }
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self { albedo: Albedo::Default }
+    }
+}
