@@ -1,1 +1,16 @@
-//! Pointillist's compute kernels as SPIR-V, and the host side of their structs.
+//! The compute kernels as SPIR-V, and the host side of the structs they share.
+//!
+//! GLSL under `glsl/` is the source; `spirv/*.spv` is what everyone runs, so that everyone gets the
+//! same pixels. The feature `compile` regenerates it (`compile-kernels`), and `spirv/manifest.txt`
+//! holds the hash of each kernel's source with all its includes, so that a stale module fails
+//! the test `spirv_is_up_to_date` also where no compiler is at hand.
+#![forbid(unsafe_code)]
+
+#[cfg(feature = "compile")]
+pub mod compile;
+mod exact;
+pub mod layout;
+pub mod source;
+pub mod spirv;
+
+pub use exact::forbid_contraction;

@@ -1,0 +1,386 @@
+//! Host side of `glsl/shared/layout.glsl`: structs, binding numbers, group sizes.
+//!
+//! A moved Rust field does not compile ([`gpu_layout!`]); a moved GLSL field fails the test
+//! `layout_matches_spirv`, a changed constant `constants_match_the_host`.
+
+use bytemuck::{Pod, Zeroable};
+
+/// A struct's GLSL name, its size, and its members with their offsets, in bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StructLayout {
+    /// Name in GLSL and in Rust.
+    pub name: &'static str,
+    /// Size in bytes, without padding at the end that std430 may add to an array's stride.
+    pub size: usize,
+    /// Members in order, each with its offset in bytes.
+    pub members: &'static [(&'static str, usize)],
+}
+
+macro_rules! gpu_layout {
+    ($name:ident, $size:literal, { $($field:ident: $offset:literal),* $(,)? }) => {
+        const _: () = assert!(size_of::<$name>() == $size, concat!(stringify!($name), ": size"));
+        $(const _: () = assert!(
+            std::mem::offset_of!($name, $field) == $offset,
+            concat!(stringify!($name), ".", stringify!($field), ": offset")
+        );)*
+        impl $name {
+            /// What the host takes this struct's layout to be.
+            pub const LAYOUT: StructLayout = StructLayout {
+                name: stringify!($name),
+                size: $size,
+                members: &[$((stringify!($field), $offset)),*],
+            };
+        }
+    };
+}
+
+macro_rules! constants {
+    ($($(#[$doc:meta])* $name:ident = $value:literal;)*) => {
+        $($(#[$doc])* pub const $name: u32 = $value;)*
+
+        /// Every constant that host and kernels share, by its GLSL name.
+        pub const CONSTANTS: &[(&str, u32)] = &[$((stringify!($name), $name)),*];
+    };
+}
+
+constants! {
+    /// No slot, no colour, no object; a ray's cell once the ray is done.
+    NONE = 0xffff_ffff;
+    /// Invocations a workgroup of kernels that run along a list.
+    LINE_GROUP = 64;
+    /// Invocations a workgroup of kernels that run over 8 × 8 pixels.
+    TILE_GROUP = 64;
+    /// Entries that one invocation of the scan and sort kernels walks.
+    RUN_LENGTH = 256;
+    /// Bits of a key sorted in one round.
+    DIGIT_BITS = 8;
+    /// Binding of `fit_polynomials`: every point.
+    FIT_POINTS = 0;
+    /// Binding of `fit_polynomials`: neighbours of the batch's points.
+    FIT_NEIGHBORS = 1;
+    /// Binding of `fit_polynomials`: the result.
+    FIT_POLYNOMIALS = 2;
+    /// Binding of `fit_polynomials`: how each fit ended.
+    FIT_OUTCOMES = 3;
+    /// Binding of the grid build: [`GridInfo`].
+    GRID_INFO = 0;
+    /// Binding of the grid build: polynomials.
+    GRID_POLYNOMIALS = 1;
+    /// Binding of the grid build: slots by ordinal.
+    GRID_ORDER = 2;
+    /// Binding of the grid build: counts, then offsets, by ordinal.
+    GRID_OFFSETS = 3;
+    /// Binding of the grid build: the cell of each pair.
+    GRID_KEYS = 4;
+    /// Binding of the grid build: the slot of each pair.
+    GRID_SLOTS = 5;
+    /// Binding of the grid build: first and past-the-last pair of each cell.
+    GRID_CELLS = 6;
+    /// Binding of the scan: values, turned into prefix sums in place.
+    SCAN_VALUES = 0;
+    /// Binding of the scan: sums of runs, or what comes before each.
+    SCAN_SUMS = 1;
+    /// Binding of the sort: keys to sort.
+    SORT_KEYS_IN = 0;
+    /// Binding of the sort: what travels with them.
+    SORT_SLOTS_IN = 1;
+    /// Binding of the sort: `[digit][run]`.
+    SORT_HISTOGRAM = 2;
+    /// Binding of the sort: sorted keys.
+    SORT_KEYS_OUT = 3;
+    /// Binding of the sort: what travelled with them.
+    SORT_SLOTS_OUT = 4;
+    /// First of the four bindings of the ray state read.
+    STATE_IN = 0;
+    /// First of the four bindings of the ray state written.
+    STATE_OUT = 4;
+    /// Binding of the tracing kernels: [`GridInfo`].
+    TRACE_INFO = 8;
+    /// Binding of `grid_trace`: range of each cell.
+    TRACE_CELLS = 9;
+    /// Binding of `grid_trace`: points of the cells.
+    TRACE_SLOTS = 10;
+    /// Binding of the tracing kernels: polynomials.
+    TRACE_POLYNOMIALS = 11;
+    /// Binding of `grid_trace`: count of live rays.
+    TRACE_LIVE = 12;
+    /// Binding of `shade`: [`ObjectInfo`] by object.
+    SHADE_OBJECTS = 13;
+    /// Binding of `shade`: three floats a point.
+    SHADE_COLORS = 14;
+    /// Binding of `shade`: [`Light`]s.
+    SHADE_LIGHTS = 15;
+    /// Binding of `shade`: [`FilmPixel`]s.
+    SHADE_FILM = 16;
+    /// A fit that found no surface.
+    FIT_NO_SURFACE = 0;
+    /// A fit that fell back to a plane.
+    FIT_PLANE = 1;
+    /// The paper's polynomial without linear terms.
+    FIT_INCOMPLETE = 2;
+    /// The polynomial with linear terms.
+    FIT_FULL = 3;
+    /// A light infinitely far away.
+    LIGHT_DIRECTIONAL = 0;
+    /// A light at a point.
+    LIGHT_POINT = 1;
+}
+
+/// One point of the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Point {
+    /// Centred scene space.
+    pub position: [f32; 3],
+    /// Place in its file.
+    pub index: u32,
+}
+gpu_layout!(Point, 16, { position: 0, index: 12 });
+
+/// The surface near one point, in world form: with y = x − center,
+/// gradient · y − offset − yᵀ M y = 0 where |y| ≤ trust (\[T\] §4; method, section 1).
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Polynomial {
+    /// p, and the trust radius b; b = 0 where the point carries no surface.
+    pub center_trust: [f32; 4],
+    /// m = n − E u − F v, and D.
+    pub gradient_offset: [f32; 4],
+    /// M: xx, yy, zz, xy.
+    pub curvature: [f32; 4],
+    /// M: xz, yz.
+    pub cross_terms: [f32; 2],
+    /// Index of the object in the scene.
+    pub object: u32,
+    /// Place in its file.
+    pub index: u32,
+}
+gpu_layout!(Polynomial, 64, {
+    center_trust: 0, gradient_offset: 16, curvature: 32, cross_terms: 48, object: 56, index: 60,
+});
+
+/// How one fit ended.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct FitOutcome {
+    /// The trust radius b, or 0.
+    pub trust: f32,
+    /// One of `FIT_*`.
+    pub kind: u32,
+}
+gpu_layout!(FitOutcome, 8, { trust: 0, kind: 4 });
+
+/// Push constants of `fit_polynomials`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct FitParams {
+    /// First slot of this batch.
+    pub first_slot: u32,
+    /// Points in this batch.
+    pub point_count: u32,
+    /// Entries a point in the list of neighbours.
+    pub neighbors: u32,
+    /// `FIT_FULL` or `FIT_INCOMPLETE`: the first kind tried.
+    pub polynomial: u32,
+    /// h for all points, or 0: the distance to the last neighbour.
+    pub feature_size: f32,
+    /// b / h.
+    pub trust: f32,
+    /// Index of the object in the scene.
+    pub object: u32,
+    /// Slot whose neighbours come first in the list.
+    pub first_listed: u32,
+}
+gpu_layout!(FitParams, 32, {
+    first_slot: 0, point_count: 4, neighbors: 8, polynomial: 12, feature_size: 16, trust: 20,
+    object: 24, first_listed: 28,
+});
+
+/// The uniform grid's place and size.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GridInfo {
+    /// Lowest corner, centred scene space.
+    pub origin: [f32; 3],
+    /// Of a cell.
+    pub edge: f32,
+    /// Cells along x, y, z.
+    pub resolution: [u32; 3],
+    /// 1 / edge.
+    pub inverse_edge: f32,
+}
+gpu_layout!(GridInfo, 32, { origin: 0, edge: 12, resolution: 16, inverse_edge: 28 });
+
+impl GridInfo {
+    /// Cells in all.
+    #[must_use]
+    pub fn cell_count(&self) -> u32 {
+        self.resolution.iter().product()
+    }
+}
+
+/// Push constants of the grid build.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GridParams {
+    /// Points of the scene.
+    pub point_count: u32,
+    /// Pairs of a cell and a point near it.
+    pub pair_count: u32,
+}
+gpu_layout!(GridParams, 8, { point_count: 0, pair_count: 4 });
+
+/// Push constants of the scan.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ScanParams {
+    /// Values.
+    pub count: u32,
+    /// 1 where the sums hold what comes before each run.
+    pub has_base: u32,
+}
+gpu_layout!(ScanParams, 8, { count: 0, has_base: 4 });
+
+/// Push constants of the sort.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct SortParams {
+    /// Keys.
+    pub count: u32,
+    /// Lowest bit of the digit.
+    pub shift: u32,
+    /// Runs of `RUN_LENGTH` keys.
+    pub runs: u32,
+}
+gpu_layout!(SortParams, 12, { count: 0, shift: 4, runs: 8 });
+
+/// Push constants of `camera_rays`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct CameraParams {
+    /// Centred scene space.
+    pub eye: [f32; 3],
+    /// Size of a pixel on the plane at distance 1.
+    pub scale: f32,
+    /// Unit vector to the right.
+    pub right: [f32; 3],
+    /// Half the full image's columns.
+    pub half_width: f32,
+    /// Unit vector upwards.
+    pub up: [f32; 3],
+    /// Half the full image's rows.
+    pub half_height: f32,
+    /// Unit vector of the viewing axis.
+    pub forward: [f32; 3],
+    /// Unused.
+    pub pad: u32,
+    /// The tile's first pixel in the full image.
+    pub tile_origin: [u32; 2],
+    /// Columns and rows of the tile.
+    pub tile_size: [u32; 2],
+}
+gpu_layout!(CameraParams, 80, {
+    eye: 0, scale: 12, right: 16, half_width: 28, up: 32, half_height: 44, forward: 48, pad: 60,
+    tile_origin: 64, tile_size: 72,
+});
+
+/// Push constants of `grid_trace`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct TraceParams {
+    /// Columns and rows of the tile.
+    pub tile_size: [u32; 2],
+    /// K: cells a ray may cross in this pass.
+    pub cells: u32,
+    /// Loop iterations a ray may spend in this pass.
+    pub work: u32,
+}
+gpu_layout!(TraceParams, 16, { tile_size: 0, cells: 8, work: 12 });
+
+/// Push constants of `shade`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ShadeParams {
+    /// Unit vector of the viewing axis.
+    pub forward: [f32; 3],
+    /// Lights of the scene.
+    pub light_count: u32,
+    /// Linear RGB.
+    pub background: [f32; 3],
+    /// 1 where the background is left out.
+    pub transparent: u32,
+    /// Columns and rows of the tile.
+    pub tile_size: [u32; 2],
+}
+gpu_layout!(ShadeParams, 40, {
+    forward: 0, light_count: 12, background: 16, transparent: 28, tile_size: 32,
+});
+
+/// What shading needs of an object.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ObjectInfo {
+    /// Linear RGB, where the points' colours do not count.
+    pub albedo: [f32; 3],
+    /// First float of the object's colours, or `NONE`.
+    pub first_color: u32,
+    /// First slot of the object.
+    pub first_slot: u32,
+    /// Unused.
+    pub pad0: u32,
+    /// Unused.
+    pub pad1: u32,
+    /// Unused.
+    pub pad2: u32,
+}
+gpu_layout!(ObjectInfo, 32, {
+    albedo: 0, first_color: 12, first_slot: 16, pad0: 20, pad1: 24, pad2: 28,
+});
+
+/// One light.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Light {
+    /// Unit vector towards a directional light; a point light's position, centred scene space.
+    pub vector: [f32; 3],
+    /// One of `LIGHT_*`.
+    pub kind: u32,
+    /// Irradiance on a surface facing it, or intensity.
+    pub strength: [f32; 3],
+    /// Unused.
+    pub pad: u32,
+}
+gpu_layout!(Light, 32, { vector: 0, kind: 12, strength: 16, pad: 28 });
+
+/// What one pixel saw.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct FilmPixel {
+    /// Radiance, and coverage.
+    pub color: [f32; 4],
+    /// First surface, centred scene space; distance along the viewing axis, or +inf.
+    pub position_depth: [f32; 4],
+    /// Unit normal facing the viewer; index of the object, or −1.
+    pub normal_object: [f32; 4],
+    /// Points tested, cells crossed, slot of the hit or `NONE`, 0.
+    pub counts: [u32; 4],
+}
+gpu_layout!(FilmPixel, 64, { color: 0, position_depth: 16, normal_object: 32, counts: 48 });
+
+/// Every struct that host and kernels share.
+pub const STRUCTS: &[StructLayout] = &[
+    Point::LAYOUT,
+    Polynomial::LAYOUT,
+    FitOutcome::LAYOUT,
+    FitParams::LAYOUT,
+    GridInfo::LAYOUT,
+    GridParams::LAYOUT,
+    ScanParams::LAYOUT,
+    SortParams::LAYOUT,
+    CameraParams::LAYOUT,
+    TraceParams::LAYOUT,
+    ShadeParams::LAYOUT,
+    ObjectInfo::LAYOUT,
+    Light::LAYOUT,
+    FilmPixel::LAYOUT,
+];

@@ -1,0 +1,56 @@
+//! The compiled modules, by the kernel's name.
+
+macro_rules! modules {
+    ($($(#[$doc:meta])* $name:ident),* $(,)?) => {
+        /// Names of all kernels: stems of `glsl/kernels/*.comp` and of `spirv/*.spv`.
+        pub const NAMES: &[&str] = &[$(stringify!($name)),*];
+
+        $($(#[$doc])*
+        #[must_use]
+        pub fn $name() -> Vec<u32> {
+            words(include_bytes!(concat!("../spirv/", stringify!($name), ".spv")))
+        })*
+
+        /// The module of a kernel, by its name.
+        #[must_use]
+        pub fn by_name(name: &str) -> Option<Vec<u32>> {
+            match name {
+                $(stringify!($name) => Some($name()),)*
+                _ => None,
+            }
+        }
+    };
+}
+
+modules! {
+    /// The ray through each pixel's centre.
+    camera_rays,
+    /// The local polynomial of each point.
+    fit_polynomials,
+    /// Cells around each trust ball.
+    grid_count,
+    /// Pairs of cell and point.
+    grid_emit,
+    /// Where each cell's points begin and end.
+    grid_ranges,
+    /// One pass of the traversal.
+    grid_trace,
+    /// Prefix sums, second half.
+    scan_apply,
+    /// Prefix sums, first half.
+    scan_reduce,
+    /// Lambert's law at the hits.
+    shade,
+    /// Stable sort by one digit, first half.
+    sort_count,
+    /// Stable sort by one digit, second half.
+    sort_scatter,
+}
+
+/// Words of a module, whatever the alignment of its bytes.
+fn words(bytes: &[u8]) -> Vec<u32> {
+    bytes
+        .chunks_exact(4)
+        .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
+        .collect()
+}

@@ -1,0 +1,101 @@
+// grid_trace: lets each live ray cross up to K cells of the grid (section 5 of the paper).
+//
+// reads   the ray state, grid, polynomials
+//         cells            first and past-the-last entry of each cell in slots
+//         slots            the points of each cell
+// writes  the ray state    every pixel, also of rays that are done: the images swap after this
+//         live             how many rays have not ended yet
+// runs    one invocation per pixel of the tile; dispatched until no ray lives
+// twin    crates/reference/src/grid_trace.rs
+//
+// A ray keeps the nearest hit over all points it tested, whatever cell the hit lies in, and ends
+// where that hit is no farther than the exit of its cell, or where it leaves the grid. K = 1 is the
+// paper's loop. Any K gives the same bits: a pass can end after any cell, and, so that no dispatch
+// runs away, after any 32 points of one; cell and cursor say where to go on.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define STATE_READS
+#define STATE_WRITES
+#include "layout.glsl"
+#include "math.glsl"
+#include "grid.glsl"
+#include "polynomial.glsl"
+#include "state.glsl"
+#include "index.glsl"
+
+layout(local_size_x = TILE_GROUP) in;
+layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
+layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
+layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
+layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
+layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
+layout(push_constant) uniform Push { TraceParams params; };
+
+#define BATCH 32u // points tested before any is solved: one bit each
+
+void main() {
+    uvec2 pixel = tile_pixel();
+    if (any(greaterThanEqual(pixel, params.tile_size))) return;
+    Ray ray = load_ray(ivec2(pixel));
+
+    vec3 o = ray.origin, d = ray.direction;
+    uint cells_left = params.cells;
+    uint work_left = params.work;
+    bool alive = ray.cell != NONE;
+    uint cell = ray.cell;
+    uvec2 range = alive ? cells[cell] : uvec2(0u);
+    uint next = range.x + ray.cursor;
+    uint hit_object = NONE, hit_index = NONE;
+    if (alive && ray.hit_slot != NONE) {
+        hit_object = polynomials[ray.hit_slot].object;
+        hit_index = polynomials[ray.hit_slot].index;
+    }
+
+    while (alive && cells_left > 0u && work_left > 0u) {
+        uint count = min(range.y - next, BATCH);
+        uint candidates = 0u;
+        for (uint j = 0u; j < count; ++j) {
+            bool near = near_trust_ball(o, d, polynomials[slots[next + j]].center_trust, ray.hit_t);
+            candidates |= near ? 1u << j : 0u;
+        }
+        uint solved = 0u;
+        while (candidates != 0u) {
+            uint slot = slots[next + uint(findLSB(candidates))];
+            candidates &= candidates - 1u;
+            Polynomial p = polynomials[slot];
+            float t = intersect(o, d, p);
+            bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);
+            bool better = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);
+            ray.hit_t = better ? t : ray.hit_t;
+            ray.hit_slot = better ? slot : ray.hit_slot;
+            hit_object = better ? p.object : hit_object;
+            hit_index = better ? p.index : hit_index;
+            ++solved;
+        }
+        next += count;
+        ray.tests += count;
+        work_left -= min(work_left, count + solved + 1u);
+
+        // On to the next cell that holds points, once this one is exhausted.
+        bool seeking = next == range.y;
+        while (seeking && cells_left > 0u && work_left > 0u) {
+            uvec3 at = cell_of_id(grid, cell);
+            vec3 exits = crossings(grid, at, o, d);
+            bool ends = ray.hit_t <= nearest_crossing(exits);
+            uint after = ends ? NONE : step_cell(grid, at, exits, d);
+            alive = after != NONE;
+            cell = after;
+            range = alive ? cells[after] : uvec2(0u);
+            next = range.x;
+            seeking = alive && range.x == range.y;
+            ray.cells += alive ? 1u : 0u;
+            --cells_left;
+            --work_left;
+        }
+    }
+
+    ray.cell = cell;
+    ray.cursor = next - range.x;
+    store_ray(ivec2(pixel), ray);
+    if (alive) atomicAdd(live, 1u);
+}

@@ -1,0 +1,69 @@
+// shade: Lambert's law at the hit of each ray, the background where there is none (method, section 4).
+//
+// reads   the ray state, polynomials
+//         objects          one an object of the scene
+//         colors           three floats a point of each object that has colours, by slot
+//         lights
+// writes  film             every pixel
+// runs    one invocation per pixel of the tile
+// twin    crates/reference/src/shade.rs
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define STATE_READS
+#include "layout.glsl"
+#include "math.glsl"
+#include "polynomial.glsl"
+#include "state.glsl"
+#include "index.glsl"
+
+layout(local_size_x = TILE_GROUP) in;
+layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
+layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
+layout(std430, binding = SHADE_COLORS) readonly buffer Colors { float colors[]; };
+layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
+layout(std430, binding = SHADE_FILM) writeonly buffer Film { FilmPixel film[]; };
+layout(push_constant) uniform Push { ShadeParams params; };
+
+#define INVERSE_PI 0.318309886
+#define INFINITE_DEPTH uintBitsToFloat(0x7f800000u)
+
+vec3 point_color(ObjectInfo object, uint slot) {
+    bool has_colors = object.first_color != NONE;
+    uint at = has_colors ? object.first_color + 3u * (slot - object.first_slot) : 0u;
+    vec3 color = vec3(colors[at], colors[at + 1u], colors[at + 2u]);
+    return has_colors ? color : object.albedo;
+}
+
+// What one light sends to a surface at x, by Lambert's law.
+vec3 irradiance(Light light, vec3 x, vec3 normal) {
+    vec3 towards = light.vector - x;
+    float square = dot3(towards, towards);
+    bool is_point = light.kind == LIGHT_POINT && square > 0.0;
+    vec3 l = is_point ? towards / sqrt(square) : light.vector;
+    float cosine = max(dot3(normal, l), 0.0);
+    vec3 arriving = is_point ? light.strength / square : light.strength;
+    return light.kind == LIGHT_POINT && !is_point ? vec3(0.0) : arriving * cosine;
+}
+
+void main() {
+    uvec2 pixel = tile_pixel();
+    if (any(greaterThanEqual(pixel, params.tile_size))) return;
+    Ray ray = load_ray(ivec2(pixel));
+    uint at = pixel.y * params.tile_size.x + pixel.x;
+    uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, 0u);
+    if (ray.hit_slot == NONE) {
+        vec3 behind = params.transparent != 0u ? vec3(0.0) : params.background;
+        film[at] = FilmPixel(vec4(ray.color.rgb + behind, 0.0), vec4(0.0, 0.0, 0.0, INFINITE_DEPTH),
+                             vec4(0.0, 0.0, 0.0, -1.0), counts);
+        return;
+    }
+    Polynomial p = polynomials[ray.hit_slot];
+    vec3 y, normal;
+    surface_at(ray.origin, ray.direction, ray.hit_t, p, y, normal);
+    vec3 x = p.center_trust.xyz + y;
+    vec3 light = vec3(0.0);
+    for (uint i = 0u; i < params.light_count; ++i) light += irradiance(lights[i], x, normal);
+    vec3 radiance = ray.color.rgb + point_color(objects[p.object], ray.hit_slot) * (light * INVERSE_PI);
+    float depth = ray.hit_t * dot3(ray.direction, params.forward);
+    film[at] = FilmPixel(vec4(radiance, 1.0), vec4(x, depth), vec4(normal, float(p.object)), counts);
+}

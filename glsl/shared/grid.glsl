@@ -1,0 +1,95 @@
+// grid: cells of the uniform grid, and the steps of a ray through them.
+//
+// twin  crates/reference/src/grid.rs
+// Steps after Amanatides and Woo, A Fast Voxel Traversal Algorithm for Ray Tracing (1987), but
+// every crossing is computed from the cell itself, never by adding up: a ray can stop anywhere
+// and go on in another pass with the same bits.
+#ifndef GRID_GLSL
+#define GRID_GLSL
+#include "layout.glsl"
+#include "math.glsl"
+
+#define BALL_MARGIN 1.0001 // of the trust radius, so that rounding loses no cell that a hit lies in
+#define PARALLEL 1e-20     // a direction's component under this never crosses a face
+
+uint cell_id(GridInfo grid, uvec3 cell) {
+    return cell.x + grid.resolution.x * (cell.y + grid.resolution.y * cell.z);
+}
+
+uvec3 cell_of_id(GridInfo grid, uint id) {
+    uint row = id / grid.resolution.x;
+    return uvec3(id % grid.resolution.x, row % grid.resolution.y, row / grid.resolution.y);
+}
+
+// The cell that holds x, or the nearest one where x lies outside.
+uvec3 cell_of(GridInfo grid, vec3 x) {
+    vec3 at = floor((x - grid.origin) * grid.inverse_edge);
+    return uvec3(clamp(at, vec3(0.0), vec3(grid.resolution) - 1.0));
+}
+
+// Cells low .. high (inclusive) hold every cell that the ball could meet.
+void cells_around(GridInfo grid, vec3 center, float radius, out uvec3 low, out uvec3 high) {
+    low = cell_of(grid, center - radius);
+    high = cell_of(grid, center + radius);
+}
+
+bool ball_meets_cell(GridInfo grid, uvec3 cell, vec3 center, float radius) {
+    vec3 low = grid.origin + vec3(cell) * grid.edge;
+    vec3 high = grid.origin + vec3(cell + 1u) * grid.edge;
+    vec3 away = max(max(low - center, center - high), vec3(0.0));
+    return dot3(away, away) <= radius * radius;
+}
+
+// Distance along the ray to the face of the cell that it leaves through, along one axis.
+float crossing(float origin, float edge, uint cell, float o, float d) {
+    bool crosses = abs(d) > PARALLEL;
+    float face = origin + float(d > 0.0 ? cell + 1u : cell) * edge;
+    return crosses ? (face - o) / (crosses ? d : 1.0) : NO_HIT;
+}
+
+vec3 crossings(GridInfo grid, uvec3 cell, vec3 o, vec3 d) {
+    return vec3(crossing(grid.origin.x, grid.edge, cell.x, o.x, d.x),
+                crossing(grid.origin.y, grid.edge, cell.y, o.y, d.y),
+                crossing(grid.origin.z, grid.edge, cell.z, o.z, d.z));
+}
+
+float nearest_crossing(vec3 t) {
+    return min(t.x, min(t.y, t.z));
+}
+
+// One axis of the slabs of the grid's box: narrows [range.x, range.y].
+vec2 clip_slab(vec2 range, float low, float high, float o, float d) {
+    bool crosses = abs(d) > PARALLEL;
+    float divisor = crosses ? d : 1.0;
+    float a = (low - o) / divisor;
+    float b = (high - o) / divisor;
+    bool inside = o >= low && o <= high;
+    vec2 clipped = vec2(max(range.x, min(a, b)), min(range.y, max(a, b)));
+    return crosses ? clipped : (inside ? range : vec2(NO_HIT, -NO_HIT));
+}
+
+// The first cell of a ray that starts anywhere, or NONE where it misses the grid.
+uint enter_grid(GridInfo grid, vec3 o, vec3 d) {
+    vec3 high = grid.origin + vec3(grid.resolution) * grid.edge;
+    vec2 range = vec2(0.0, NO_HIT);
+    range = clip_slab(range, grid.origin.x, high.x, o.x, d.x);
+    range = clip_slab(range, grid.origin.y, high.y, o.y, d.y);
+    range = clip_slab(range, grid.origin.z, high.z, o.z, d.z);
+    bool misses = range.x > range.y;
+    uvec3 cell = cell_of(grid, misses ? o : o + range.x * d);
+    return misses ? NONE : cell_id(grid, cell);
+}
+
+// The next cell behind the face at the nearest crossing (ties: the lower axis), or NONE outside.
+uint step_cell(GridInfo grid, uvec3 cell, vec3 t, vec3 d) {
+    bool along_x = t.x <= t.y && t.x <= t.z;
+    bool along_y = !along_x && t.y <= t.z;
+    bool along_z = !along_x && !along_y;
+    uvec3 axis = uvec3(along_x, along_y, along_z);
+    uvec3 forth = axis * uvec3(greaterThan(d, vec3(0.0)));
+    uvec3 back = axis - forth;
+    uvec3 next = cell + forth - back; // 0 - 1 wraps to a number past every resolution
+    bool outside = any(greaterThanEqual(next, grid.resolution));
+    return outside ? NONE : cell_id(grid, outside ? uvec3(0u) : next);
+}
+#endif

@@ -1,0 +1,18 @@
+// index: which entry of a list, or which pixel of a tile, an invocation works on.
+#ifndef INDEX_GLSL
+#define INDEX_GLSL
+#include "layout.glsl"
+
+// Lists longer than one axis of a dispatch may be are spread over two.
+uint list_index() {
+    return gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * gl_WorkGroupSize.x) + gl_GlobalInvocationID.x;
+}
+
+// A workgroup covers 8 x 8 pixels, each run of eight invocations 4 x 2 of them: rays that run
+// together should see the same cells.
+uvec2 tile_pixel() {
+    uint i = gl_LocalInvocationID.x;
+    uvec2 within = uvec2((i & 3u) | ((i >> 1) & 4u), ((i >> 2) & 1u) | ((i >> 3) & 6u));
+    return gl_WorkGroupID.xy * 8u + within;
+}
+#endif

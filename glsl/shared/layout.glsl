@@ -1,0 +1,169 @@
+// layout: every struct, binding number and group size that kernels and host share.
+//
+// host twin  crates/kernels/src/layout.rs; the tests `layout_matches_spirv` and
+//            `constants_match_the_host` compare the two.
+// Buffers are std430. Indices: a slot is a point's place in memory, its index the place in its
+// file, its ordinal the place in the order (object, index).
+#ifndef LAYOUT_GLSL
+#define LAYOUT_GLSL
+
+#define NONE 0xffffffffu // no slot, no colour, no object; a ray's cell once the ray is done
+
+#define LINE_GROUP 64 // invocations a workgroup of every kernel that runs along a list
+#define TILE_GROUP 64 // invocations a workgroup of every kernel that runs over pixels, 8 x 8 of them
+#define RUN_LENGTH 256 // entries that one invocation of the scan and sort kernels walks
+#define DIGIT_BITS 8 // bits of a key sorted in one round
+
+// fit_polynomials
+#define FIT_POINTS 0
+#define FIT_NEIGHBORS 1
+#define FIT_POLYNOMIALS 2
+#define FIT_OUTCOMES 3
+
+// grid_count, grid_emit, grid_ranges
+#define GRID_INFO 0
+#define GRID_POLYNOMIALS 1
+#define GRID_ORDER 2
+#define GRID_OFFSETS 3
+#define GRID_KEYS 4
+#define GRID_SLOTS 5
+#define GRID_CELLS 6
+
+// scan_reduce, scan_apply
+#define SCAN_VALUES 0
+#define SCAN_SUMS 1
+
+// sort_count, sort_scatter
+#define SORT_KEYS_IN 0
+#define SORT_SLOTS_IN 1
+#define SORT_HISTOGRAM 2
+#define SORT_KEYS_OUT 3
+#define SORT_SLOTS_OUT 4
+
+// camera_rays, grid_trace, shade: the ray state, four images, and four more to write
+#define STATE_IN 0   // then 1, 2, 3
+#define STATE_OUT 4  // then 5, 6, 7
+#define TRACE_INFO 8
+#define TRACE_CELLS 9
+#define TRACE_SLOTS 10
+#define TRACE_POLYNOMIALS 11
+#define TRACE_LIVE 12
+#define SHADE_OBJECTS 13
+#define SHADE_COLORS 14
+#define SHADE_LIGHTS 15
+#define SHADE_FILM 16
+
+// How a point's fit ended.
+#define FIT_NO_SURFACE 0
+#define FIT_PLANE 1
+#define FIT_INCOMPLETE 2
+#define FIT_FULL 3
+
+#define LIGHT_DIRECTIONAL 0
+#define LIGHT_POINT 1
+
+struct Point {           // 16 bytes
+    vec3 position;       //  0  centred scene space
+    uint index;          // 12  place in its file
+};
+
+// The surface near one point: with y = x - center,
+// dot(gradient, y) - offset - y' M y = 0 where |y| <= trust (method, section 1, step 3).
+struct Polynomial {       // 64 bytes
+    vec4 center_trust;    //  0  p, and b; b = 0: the point carries no surface
+    vec4 gradient_offset; // 16  m = n - E u - F v, and D
+    vec4 curvature;       // 32  M: xx, yy, zz, xy
+    vec2 cross_terms;     // 48  M: xz, yz
+    uint object;          // 56
+    uint index;           // 60  place in its file
+};
+
+struct FitOutcome {      // 8 bytes
+    float trust;         // 0  b, or 0 where the point carries no surface
+    uint kind;           // 4  FIT_*
+};
+
+struct FitParams {       // 32 bytes
+    uint first_slot;     //  0  of this batch
+    uint point_count;    //  4  in this batch
+    uint neighbors;      //  8  entries a point in the list of neighbours
+    uint polynomial;     // 12  FIT_FULL or FIT_INCOMPLETE: the first kind tried
+    float feature_size;  // 16  h for all points, or 0: the distance to the last neighbour
+    float trust;         // 20  b / h
+    uint object;         // 24
+    uint first_listed;   // 28  slot whose neighbours come first in the list
+};
+
+struct GridInfo {        // 32 bytes
+    vec3 origin;         //  0  lowest corner
+    float edge;          // 12  of a cell
+    uvec3 resolution;    // 16  cells along x, y, z
+    float inverse_edge;  // 28
+};
+
+struct GridParams {      // 8 bytes
+    uint point_count;    // 0
+    uint pair_count;     // 4
+};
+
+struct ScanParams {      // 8 bytes
+    uint count;          // 0
+    uint has_base;       // 4  1: sums holds what comes before each run
+};
+
+struct SortParams {      // 12 bytes
+    uint count;          // 0
+    uint shift;          // 4  lowest bit of the digit
+    uint runs;           // 8
+};
+
+struct CameraParams {    // 80 bytes
+    vec3 eye;            //  0  centred scene space
+    float scale;         // 12  half the picture's height on the plane at distance 1, over half the rows
+    vec3 right;          // 16
+    float half_width;    // 28  of the full image, pixels
+    vec3 up;             // 32
+    float half_height;   // 44  of the full image, pixels
+    vec3 forward;        // 48
+    uint pad;            // 60
+    uvec2 tile_origin;   // 64  in the full image, pixels
+    uvec2 tile_size;     // 72
+};
+
+struct TraceParams {     // 16 bytes
+    uvec2 tile_size;     //  0
+    uint cells;          //  8  K: how many cells a ray may cross in this pass
+    uint work;           // 12  loop iterations a ray may spend in this pass
+};
+
+struct ShadeParams {     // 40 bytes
+    vec3 forward;        //  0  viewing axis
+    uint light_count;    // 12
+    vec3 background;     // 16
+    uint transparent;    // 28  1: the background is left out
+    uvec2 tile_size;     // 32
+};
+
+struct ObjectInfo {      // 32 bytes
+    vec3 albedo;         //  0
+    uint first_color;    // 12  in colors, or NONE: albedo counts
+    uint first_slot;     // 16
+    uint pad0;           // 20
+    uint pad1;           // 24
+    uint pad2;           // 28
+};
+
+struct Light {           // 32 bytes
+    vec3 vector;         //  0  unit, towards a directional light; a point light's position
+    uint kind;           // 12  LIGHT_*
+    vec3 strength;       // 16  irradiance, or intensity
+    uint pad;            // 28
+};
+
+struct FilmPixel {       // 64 bytes
+    vec4 color;          //  0  radiance and coverage
+    vec4 position_depth; // 16  centred scene space; distance along the viewing axis
+    vec4 normal_object;  // 32  facing the viewer; object, or -1
+    uvec4 counts;        // 48  tests, cells, slot of the hit or NONE, 0
+};
+#endif

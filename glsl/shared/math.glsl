@@ -1,0 +1,39 @@
+// math: the few functions whose bits must not depend on a driver.
+//
+// twin  crates/reference/src/real.rs
+// Made of + - * /, sqrt and bit operations alone, in one fixed order. Every float operation of
+// every kernel carries NoContraction (crates/kernels/src/exact.rs), so none is fused or reordered.
+#ifndef MATH_GLSL
+#define MATH_GLSL
+
+#define NO_HIT 3.0e38 // farther than any hit; finite, so that no infinity enters a sum
+
+float dot3(vec3 a, vec3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+vec3 cross3(vec3 a, vec3 b) {
+    return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+
+vec3 normalize3(vec3 v) {
+    return v / sqrt(dot3(v, v));
+}
+
+// e^x for -80 <= x <= 0, and 0 below -80, where a weight no longer matters. Error under 2 ulp.
+// Reduction after Cody and Waite, Software Manual for the Elementary Functions, ch. 6.
+float exp_negative(float x) {
+    float clamped = max(x, -80.0);
+    float n = floor(clamped * 1.44269504 + 0.5);
+    float r = (clamped - n * 0.693359375) + n * 2.12194440e-4;
+    float p = 1.9875691500e-4;
+    p = p * r + 1.3981999507e-3;
+    p = p * r + 8.3334519073e-3;
+    p = p * r + 4.1665795894e-2;
+    p = p * r + 1.6666665459e-1;
+    p = p * r + 5.0000001201e-1;
+    float e = (p * (r * r) + r) + 1.0;
+    float scale = uintBitsToFloat(uint(int(n) + 127) << 23);
+    return x < -80.0 ? 0.0 : e * scale;
+}
+#endif
