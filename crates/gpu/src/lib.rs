@@ -1,1 +1,50 @@
 //! Pointillist's Vulkan layer: devices, buffers, images, kernels and the recorder.
+//!
+//! All `unsafe` of the project is in this crate, behind an interface that has none. Four rules
+//! make its arguments short:
+//!
+//! * every object holds an `Arc` of its [`Device`], and a device an `Arc` of its [`Instance`], so
+//!   nothing outlives what made it;
+//! * a [`Recorder`] holds an `Arc` of every kernel, buffer and image it used until its fence has
+//!   signalled, so no pending work refers to a destroyed object;
+//! * [`Recorder::submit`] waits, and host access to a buffer takes the same lock as a submission,
+//!   so the host and the device never touch memory at the same time;
+//! * devices are opened with `robustBufferAccess`, so an index out of range in a kernel reads or
+//!   writes nothing outside its buffer.
+//!
+//! What remains on trust is the SPIR-V itself: [`Kernel::new`] expects a valid module.
+//!
+//! Any Vulkan 1.1 device with a compute queue will do. The loader is opened at run time: without
+//! one, [`Instance::new`] fails with [`GpuError::NoLoader`] and says what to install.
+
+mod access;
+mod buffer;
+mod choice;
+mod descriptors;
+mod device;
+mod error;
+mod image;
+mod instance;
+mod kernel;
+mod queue;
+mod recorder;
+mod spirv;
+mod timer;
+
+pub use buffer::Buffer;
+pub use choice::{DefaultDevice, DeviceChoice, DeviceInfo, DeviceKind};
+pub use device::{Device, Limits};
+pub use error::GpuError;
+pub use image::{Image, ImageFormat};
+pub use instance::{Instance, InstanceOptions};
+pub use kernel::{Binding, Kernel};
+pub use recorder::{PassBuilder, Recorder, Timings};
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A number no other buffer, image or kernel of this process has or will have. Handles are reused
+/// by drivers; these are not, so they can be keys of caches that outlive the object.
+fn next_id() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(1);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
