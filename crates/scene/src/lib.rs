@@ -1,18 +1,33 @@
 //! Scene files: TOML in, a checked [`Scene`] out.
 //!
 //! A [`Scene`] that exists is valid: every number is finite and in its stated range, every key was
-//! known, nothing was ignored. What the file got wrong is a [`SceneError`] that names the line.
+//! known and built, nothing was ignored. What a file gets wrong is a [`SceneError`] that names the
+//! line. `keys.rs` states every key once; checks, defaults, [`json_schema`] and the tables of
+//! docs/scene.md come from it. `not_built.rs` lists what is known there but not built.
 #![forbid(unsafe_code)]
 
+mod check;
+mod document;
 mod error;
+mod keys;
 mod load;
+mod not_built;
+mod overrides;
+mod read;
 mod scene;
+mod schema;
+mod settings;
 mod transform;
 
+#[cfg(test)]
+mod reference_page;
+#[cfg(test)]
+mod tests;
+
 pub use error::SceneError;
-pub use load::json_schema;
 pub use scene::{
     Albedo, Background, Camera, FeatureSize, Fresnel, ImageSettings, Light, Material, Object,
     Polynomial, RayLoop, RenderSettings, Scene, Surface, Up,
 };
+pub use schema::json_schema;
 pub use transform::Transform;

@@ -1,45 +1,331 @@
 //! From text to a checked scene.
 
-use crate::{Scene, SceneError, Up};
-use std::path::Path;
+use crate::document::{Node, Origin, SyntaxError, Value, parse_file, parse_value};
+use crate::error::{Problem, Source};
+use crate::keys::{self, SCENE};
+use crate::read::{Reader, to_number, to_vector};
+use crate::{
+    Albedo, Background, Camera, FeatureSize, Fresnel, ImageSettings, Light, Material, Object,
+    Polynomial, RayLoop, RenderSettings, Scene, SceneError, Surface, Transform, Up,
+};
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
 
-fn unfinished(file: &Path) -> SceneError {
-    SceneError::one(format!("{}: scene files are not built yet", file.display()))
-}
+/// Largest scene file in bytes; points belong in point files.
+const MAX_BYTES: u64 = 16 << 20;
 
 impl Scene {
-    /// Reads and checks a scene file. `overrides` are `PATH=VALUE`, applied in order before the
-    /// checks.
+    /// Reads and checks a scene file, and that its point files exist. `overrides` are `PATH=VALUE`
+    /// (`objects.0.surface.trust=0.7`), applied in order before the checks; paths in them too
+    /// start from the scene file's folder.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
-        let _ = overrides;
-        Err(unfinished(path))
+        let bytes = read(path).map_err(|message| SceneError::file(path, &message))?;
+        let text = str::from_utf8(&bytes).map_err(|error| {
+            let at = error.valid_up_to();
+            let byte = bytes.get(at).copied().unwrap_or_default();
+            let message =
+                format!("found byte 0x{byte:02x}, expected UTF-8; save the file as UTF-8");
+            SceneError::at(path, &bytes, at, &message)
+        })?;
+        let (document, scene) = parse(text, path, overrides)?;
+        points_exist(&document, &scene, &Source { file: path, text, overrides })?;
+        Ok(scene)
     }
 
     /// Checks scene text as if it were read from `file`, which names it in messages and whose
-    /// folder relative paths start from. Opens nothing.
+    /// folder relative paths start from. Opens no file.
     pub fn from_toml(text: &str, file: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
-        let _ = (text, overrides);
-        Err(unfinished(file))
+        parse(text, file, overrides).map(|(_, scene)| scene)
     }
 
-    /// The scene that a point file rendered directly means: one object with defaults, no camera,
-    /// a key light and a dim fill light, a neutral background.
+    /// The scene that a point file rendered directly means: one object with defaults, no camera
+    /// (the renderer frames it), a key light and a dim fill light, a grey background. `overrides`
+    /// apply as in [`Scene::load`], with paths relative to the working directory.
     pub fn for_point_file(
         points: &Path,
         up: Up,
         overrides: &[String],
     ) -> Result<Scene, SceneError> {
-        let _ = (up, overrides);
-        Err(unfinished(points))
-    }
-
-    /// Canonical TOML of everything that changes a picture: neither `cells_per_pass` nor `loop`.
-    pub fn settings_toml(&self) -> String {
-        String::new()
+        let source = Source { file: points, text: "", overrides };
+        let mut document = point_file_document(points, up);
+        let mut scene = checked(&mut document, Path::new(""), &source)?;
+        let written = document.get("objects").and_then(|list| list.items().first()?.get("points"));
+        // The document holds text; the path itself may hold bytes that are not UTF-8.
+        if let (Some(Origin::Given), [object, ..]) =
+            (written.map(|node| node.origin), scene.objects.as_mut_slice())
+        {
+            object.points = points.to_path_buf();
+        }
+        points_exist(&document, &scene, &source)?;
+        Ok(scene)
     }
 }
 
-/// The JSON Schema of scene files.
-pub fn json_schema() -> serde_json::Value {
-    serde_json::Value::Null
+/// The bytes of a scene file.
+fn read(path: &Path) -> Result<Vec<u8>, String> {
+    let reason = |error: io::Error| match error.kind() {
+        io::ErrorKind::NotFound => "no such file; check the path".to_owned(),
+        _ => format!("cannot be read ({error}); check the file and its permissions"),
+    };
+    let meta = fs::metadata(path).map_err(reason)?;
+    if meta.is_dir() {
+        return Err("found a folder, expected a scene file; name the file in it".into());
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(reason)?;
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(reason)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(format!(
+            "found more than {MAX_BYTES} bytes, the limit of a scene file; keep points in point \
+             files"
+        ));
+    }
+    Ok(bytes)
+}
+
+fn parse(text: &str, file: &Path, overrides: &[String]) -> Result<(Node, Scene), SceneError> {
+    let mut document = parse_file(text).map_err(|SyntaxError { at, message }| {
+        let message = format!("not valid TOML: {message}");
+        match at {
+            Some(at) => SceneError::at(file, text.as_bytes(), at, &message),
+            None => SceneError::file(file, &message),
+        }
+    })?;
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let scene = checked(&mut document, folder, &Source { file, text, overrides })?;
+    Ok((document, scene))
+}
+
+/// Overrides, then checks, then the scene.
+fn checked(document: &mut Node, folder: &Path, source: &Source<'_>) -> Result<Scene, SceneError> {
+    let mut problems = Vec::new();
+    for (index, text) in source.overrides.iter().enumerate() {
+        problems.extend(crate::overrides::apply(document, index, text).err());
+    }
+    problems.extend(crate::check::check(document));
+    if problems.is_empty() {
+        Ok(scene(&Reader::new(&SCENE, Some(document)), folder))
+    } else {
+        Err(SceneError::problems(problems, source))
+    }
+}
+
+/// Every object's point file is there.
+fn points_exist(document: &Node, scene: &Scene, source: &Source<'_>) -> Result<(), SceneError> {
+    let nodes = document.get("objects").map_or(&[][..], Node::items);
+    let problems: Vec<Problem> = (scene.objects.iter().zip(nodes).enumerate())
+        .filter_map(|(index, (object, node))| {
+            let path = object.points.display();
+            let message = match fs::metadata(&object.points) {
+                Ok(meta) if meta.is_dir() => {
+                    format!("found a folder at '{path}', expected a point file; name the file")
+                }
+                Ok(_) => return None,
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                    format!(
+                        "found no file at '{path}'; check the path, which starts from the \
+                             scene file's folder"
+                    )
+                }
+                Err(error) => {
+                    format!("'{path}' cannot be read ({error}); check the file and its permissions")
+                }
+            };
+            let origin = node.get("points").map_or(node.origin, |points| points.origin);
+            // A point file rendered directly is named by the message already.
+            let path = match origin {
+                Origin::Given => String::new(),
+                _ => format!("objects[{index}].points"),
+            };
+            Some(Problem { origin, path, message })
+        })
+        .collect();
+    if problems.is_empty() { Ok(()) } else { Err(SceneError::problems(problems, source)) }
+}
+
+/// As TOML, so that overrides and checks work on it as on any scene.
+fn point_file_document(points: &Path, up: Up) -> Node {
+    // Turned from y up to z up by a quarter turn about x: (x, y, z) to (x, -z, y).
+    let [key, fill] = match up {
+        Up::Y => ["[-0.5, -1.0, -0.6]", "[0.8, -0.1, -0.6]"],
+        Up::Z => ["[-0.5, 0.6, -1.0]", "[0.8, 0.6, -0.1]"],
+    };
+    let text = format!(
+        "{{ background = {{ color = [0.18, 0.18, 0.18] }}, lights = [\
+         {{ kind = \"directional\", direction = {key}, irradiance = [2.6, 2.6, 2.6] }},\
+         {{ kind = \"directional\", direction = {fill}, irradiance = [0.7, 0.7, 0.7] }}\
+         ], objects = [{{ points = {} }}] }}",
+        crate::settings::quoted(&points.to_string_lossy())
+    );
+    parse_value(&text, Origin::Given).unwrap_or_else(|| unreachable!("not TOML: {text}"))
+}
+
+fn scene(file: &Reader<'_>, folder: &Path) -> Scene {
+    Scene {
+        camera: file
+            .written("camera")
+            .map(|node| Camera::read(&Reader::new(&keys::CAMERA, Some(node)))),
+        image: ImageSettings::read(&file.table("image", &keys::IMAGE)),
+        render: RenderSettings::read(&file.table("render", &keys::RENDER)),
+        background: Background::read(&file.table("background", &keys::BACKGROUND)),
+        lights: file.tables("lights", &keys::LIGHTS).iter().map(Light::read).collect(),
+        objects: (file.tables("objects", &keys::OBJECTS).iter())
+            .map(|object| Object::read(object, folder))
+            .collect(),
+    }
+}
+
+impl Camera {
+    fn read(table: &Reader<'_>) -> Self {
+        Self {
+            eye: table.vector("eye"),
+            target: table.vector("target"),
+            up: table.vector("up"),
+            vertical_fov: table.number("vertical_fov"),
+        }
+    }
+}
+
+impl ImageSettings {
+    fn read(table: &Reader<'_>) -> Self {
+        Self {
+            size: table.counts("size"),
+            samples: table.count("samples"),
+            transparent: table.flag("transparent"),
+        }
+    }
+}
+
+impl RenderSettings {
+    fn read(table: &Reader<'_>) -> Self {
+        Self {
+            max_bounces: table.count("max_bounces"),
+            fresnel: match table.text("fresnel").as_str() {
+                "sample" => Fresnel::Sample,
+                _ => Fresnel::Transmit,
+            },
+            cells_per_pass: table.count("cells_per_pass"),
+            ray_loop: match table.text("loop").as_str() {
+                "images" => RayLoop::Images,
+                "queue" => RayLoop::Queue,
+                _ => RayLoop::Auto,
+            },
+            seed: table.count("seed"),
+            grid_resolution: table.count("grid_resolution"),
+        }
+    }
+}
+
+impl Background {
+    fn read(table: &Reader<'_>) -> Self {
+        Self { color: table.vector("color") }
+    }
+}
+
+impl Light {
+    fn read(table: &Reader<'_>) -> Self {
+        match table.text("kind").as_str() {
+            "point" => Self::Point {
+                position: table.vector("position"),
+                intensity: table.vector("intensity"),
+            },
+            _ => Self::Directional {
+                direction: table.vector("direction"),
+                irradiance: table.vector("irradiance"),
+            },
+        }
+    }
+}
+
+impl Object {
+    fn read(table: &Reader<'_>, folder: &Path) -> Self {
+        let written = table.text("points");
+        let points: PathBuf = folder.join(&written);
+        let name = match table.written("name") {
+            Some(_) => table.text("name"),
+            None => points.file_stem().map_or(written.clone(), |s| s.to_string_lossy().into()),
+        };
+        Self {
+            name,
+            points,
+            points_as_written: written,
+            transform: Transform::read(&table.table("transform", &keys::TRANSFORM)),
+            surface: Surface::read(&table.table("surface", &keys::SURFACE)),
+            material: Material::read(&table.table("material", &keys::MATERIAL)),
+        }
+    }
+}
+
+impl Transform {
+    fn read(table: &Reader<'_>) -> Self {
+        Self {
+            scale: table.number("scale"),
+            rotate: table.vector("rotate"),
+            translate: table.vector("translate"),
+        }
+    }
+}
+
+impl Surface {
+    fn read(table: &Reader<'_>) -> Self {
+        Self {
+            neighbors: table.count("neighbors"),
+            polynomial: match table.text("polynomial").as_str() {
+                "incomplete" => Polynomial::Incomplete,
+                _ => Polynomial::Full,
+            },
+            feature_size: to_number(&table.value("feature_size"))
+                .map_or(FeatureSize::Adaptive, FeatureSize::Constant),
+            trust: table.number("trust"),
+        }
+    }
+}
+
+impl Material {
+    fn read(table: &Reader<'_>) -> Self {
+        let albedo = match table.written("albedo").map(|node| &node.value) {
+            None => Albedo::Default,
+            Some(Value::Text(_)) => Albedo::Points,
+            Some(value) => to_vector(value)
+                .map_or_else(|| table.unlike("an albedo", "albedo", value), Albedo::Color),
+        };
+        Self { albedo }
+    }
+}
+
+impl Default for ImageSettings {
+    fn default() -> Self {
+        Self::read(&Reader::defaults(&keys::IMAGE))
+    }
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        Self::read(&Reader::defaults(&keys::RENDER))
+    }
+}
+
+impl Default for Background {
+    fn default() -> Self {
+        Self::read(&Reader::defaults(&keys::BACKGROUND))
+    }
+}
+
+impl Default for Transform {
+    fn default() -> Self {
+        Self::read(&Reader::defaults(&keys::TRANSFORM))
+    }
+}
+
+impl Default for Surface {
+    fn default() -> Self {
+        Self::read(&Reader::defaults(&keys::SURFACE))
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self::read(&Reader::defaults(&keys::MATERIAL))
+    }
 }

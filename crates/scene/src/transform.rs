@@ -47,12 +47,6 @@ impl Transform {
     }
 }
 
-impl Default for Transform {
-    fn default() -> Self {
-        Self::IDENTITY
-    }
-}
-
 /// Sine and cosine of an angle in degrees, exact at multiples of 90.
 fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     let turn = degrees.rem_euclid(360.0);

@@ -1,0 +1,575 @@
+//! Every key of a scene file: type, range, unit, default, meaning. The one place they are stated.
+//!
+//! The checker, the defaults of the public types, the JSON Schema and the tables of docs/scene.md
+//! all come from [`SCENE`]. What is known here but not built is listed in `not_built.rs`.
+
+use crate::check::{camera_has_a_view, direction_has_a_length};
+use crate::read::Reader;
+
+/// A key's name and what is wrong with its value.
+pub(crate) type Fault = (&'static str, String);
+
+/// A check that needs several keys of a table.
+pub(crate) type WholeCheck = fn(&Reader<'_>) -> Result<(), Fault>;
+
+/// A table of the file.
+pub(crate) struct Table {
+    /// As a file writes it: `[camera]`, `[[lights]]`.
+    pub(crate) header: &'static str,
+    pub(crate) doc: &'static str,
+    pub(crate) keys: &'static [Key],
+    /// What no key can say alone. Runs when each key is right by itself; names the key at fault.
+    pub(crate) whole: Option<WholeCheck>,
+}
+
+impl Table {
+    pub(crate) fn key(&self, name: &str) -> Option<&'static Key> {
+        self.keys.iter().find(|key| key.name == name)
+    }
+}
+
+/// A key of a table.
+pub(crate) struct Key {
+    pub(crate) name: &'static str,
+    pub(crate) kind: Kind,
+    pub(crate) absent: Absent,
+    pub(crate) doc: &'static str,
+    /// The value of `kind` beside it that the key belongs to, if only to one.
+    pub(crate) only: Option<&'static str>,
+}
+
+/// What a key that is left out means. Values are TOML.
+#[derive(Clone, Copy)]
+pub(crate) enum Absent {
+    /// It may not be left out; an example of a value.
+    Required(&'static str),
+    /// This value.
+    Value(&'static str),
+    /// What these words say; an example of a value.
+    Words(&'static str, &'static str),
+    /// The defaults of the table's own keys, or an empty list.
+    Table,
+}
+
+/// What a value has to be.
+pub(crate) enum Kind {
+    Bool,
+    Integer {
+        min: i64,
+        max: i64,
+        unit: &'static str,
+    },
+    Number(Numbers),
+    /// Three numbers.
+    Vector(Numbers),
+    /// Three numbers that are not all zero.
+    Direction,
+    /// Width and height.
+    Size {
+        max: i64,
+    },
+    Choice(&'static [&'static str]),
+    Text(&'static str),
+    /// One of several, told apart by TOML type.
+    Either(&'static [Kind]),
+    Table(&'static Table),
+    Tables {
+        table: &'static Table,
+        min: usize,
+        max: usize,
+    },
+    /// Announced for later, form not fixed.
+    Announced,
+}
+
+/// A closed range and its unit, which may be empty.
+#[derive(Clone, Copy)]
+pub(crate) struct Numbers {
+    pub(crate) min: f64,
+    pub(crate) max: f64,
+    pub(crate) unit: &'static str,
+}
+
+/// Largest magnitude of a coordinate or radiometric value: its square is still far inside f32.
+const LARGE: f64 = 1e15;
+/// Shortest length that counts as one.
+pub(crate) const SHORT: f64 = 1e-12;
+
+const fn numbers(min: f64, max: f64, unit: &'static str) -> Numbers {
+    Numbers { min, max, unit }
+}
+
+const POSITION: Kind = Kind::Vector(numbers(-LARGE, LARGE, "scene units"));
+const RADIANCE: Kind = Kind::Vector(numbers(0.0, LARGE, "W sr⁻¹ m⁻², linear RGB"));
+const SHARE: Kind = Kind::Vector(numbers(0.0, 1.0, "in linear RGB"));
+const LENGTH: Kind = Kind::Number(numbers(SHORT, LARGE, "scene units"));
+
+const fn key(name: &'static str, kind: Kind, absent: Absent, doc: &'static str) -> Key {
+    Key { name, kind, absent, doc, only: None }
+}
+
+const fn key_of(
+    only: &'static str,
+    name: &'static str,
+    kind: Kind,
+    absent: Absent,
+    doc: &'static str,
+) -> Key {
+    Key { name, kind, absent, doc, only: Some(only) }
+}
+
+const fn announced(name: &'static str, doc: &'static str) -> Key {
+    key(name, Kind::Announced, Words("none", "0"), doc)
+}
+
+const fn count(min: i64, max: i64, unit: &'static str) -> Kind {
+    Kind::Integer { min, max, unit }
+}
+
+use Absent::{Required, Value, Words};
+
+/// The whole file.
+pub(crate) static SCENE: Table = Table {
+    header: "the scene",
+    doc: "",
+    whole: None,
+    keys: &[
+        key("camera", Kind::Table(&CAMERA), Words("framed on the objects", "{}"), CAMERA.doc),
+        key("image", Kind::Table(&IMAGE), Absent::Table, IMAGE.doc),
+        key("render", Kind::Table(&RENDER), Absent::Table, RENDER.doc),
+        key("background", Kind::Table(&BACKGROUND), Absent::Table, BACKGROUND.doc),
+        key(
+            "lights",
+            Kind::Tables { table: &LIGHTS, min: 0, max: 1024 },
+            Absent::Table,
+            LIGHTS.doc,
+        ),
+        key(
+            "objects",
+            Kind::Tables { table: &OBJECTS, min: 1, max: 65_536 },
+            Required("[{ points = \"points/knot.ply\" }]"),
+            OBJECTS.doc,
+        ),
+    ],
+};
+
+pub(crate) static CAMERA: Table = Table {
+    header: "[camera]",
+    doc: "A pinhole camera with square pixels, row 0 at the top. Left out, the view is framed on \
+          the objects.",
+    whole: Some(camera_has_a_view),
+    keys: &[
+        key("eye", POSITION, Required("[0.0, 0.4, 3.0]"), "Where the camera is, in the world."),
+        key("target", POSITION, Required("[0.0, 0.0, 0.0]"), "The point in the picture's middle."),
+        key(
+            "up",
+            Kind::Direction,
+            Value("[0.0, 1.0, 0.0]"),
+            "The direction that is upwards in the picture; not parallel to the line of sight.",
+        ),
+        key(
+            "vertical_fov",
+            Kind::Number(numbers(0.001, 179.0, "degrees")),
+            Value("35.0"),
+            "Angle between the lower and the upper edge of the picture.",
+        ),
+        announced("aperture", "Size of the lens opening, for depth of field."),
+        announced("focus", "Distance that is sharp, for depth of field."),
+        announced("projection", "Other projections than the perspective one."),
+    ],
+};
+
+pub(crate) static IMAGE: Table = Table {
+    header: "[image]",
+    doc: "Size and sampling of the picture.",
+    whole: None,
+    keys: &[
+        key("size", Kind::Size { max: 16_384 }, Value("[640, 480]"), "Width and height."),
+        key(
+            "samples",
+            count(1, 65_536, "rays a pixel"),
+            Value("1"),
+            "1 is one ray through each pixel's centre, without jitter.",
+        ),
+        key(
+            "transparent",
+            Kind::Bool,
+            Value("false"),
+            "Leave the background out and premultiply the colours by coverage.",
+        ),
+    ],
+};
+
+pub(crate) static RENDER: Table = Table {
+    header: "[render]",
+    doc: "How rays are followed.",
+    whole: None,
+    keys: &[
+        key(
+            "max_bounces",
+            count(0, 1024, "surface interactions"),
+            Value("8"),
+            "Interactions after the primary hit; a ray that has spent them takes the background.",
+        ),
+        key(
+            "fresnel",
+            Kind::Choice(&["transmit", "sample"]),
+            Value("\"transmit\""),
+            "What glass does with a ray: always refract it, or choose at random with the Fresnel \
+             probability.",
+        ),
+        key(
+            "cells_per_pass",
+            count(0, u32::MAX as i64, "cells"),
+            Value("0"),
+            "Cells a ray may cross in one dispatch. 0 lets the device decide, 1 is the paper's \
+             loop. Changes no pixel.",
+        ),
+        key(
+            "loop",
+            Kind::Choice(&["images", "queue", "auto"]),
+            Value("\"auto\""),
+            "Where the ray state lives: four ping-pong storage images, or compacted in buffers. \
+             Changes no pixel.",
+        ),
+        key("seed", count(0, u32::MAX as i64, ""), Value("0"), "Seed of all that is random."),
+        key(
+            "grid_resolution",
+            count(0, 1024, "cells"),
+            Value("0"),
+            "Cells along the grid's longest axis. 0 chooses from the points.",
+        ),
+        announced("primary", "How primary rays find their first hit."),
+    ],
+};
+
+pub(crate) static BACKGROUND: Table = Table {
+    header: "[background]",
+    doc: "What rays that hit nothing see. It lights nothing else.",
+    whole: None,
+    keys: &[
+        key("color", RADIANCE, Value("[0.0, 0.0, 0.0]"), "One radiance in every direction."),
+        key(
+            "environment",
+            Kind::Text("the path of an image"),
+            Words("none", "\"sky.exr\""),
+            "An equirectangular image instead of `color`, +y up.",
+        ),
+    ],
+};
+
+pub(crate) static LIGHTS: Table = Table {
+    header: "[[lights]]",
+    doc: "A light. A scene without lights is black wherever it is diffuse.",
+    whole: Some(direction_has_a_length),
+    keys: &[
+        key(
+            "kind",
+            Kind::Choice(&["directional", "point"]),
+            Required("\"directional\""),
+            "Light from infinitely far away, or from a point.",
+        ),
+        key_of(
+            "directional",
+            "direction",
+            Kind::Direction,
+            Required("[-0.4, -1.0, -0.3]"),
+            "The way the light travels; any length.",
+        ),
+        key_of(
+            "directional",
+            "irradiance",
+            Kind::Vector(numbers(0.0, LARGE, "W m⁻², linear RGB")),
+            Required("[3.0, 3.0, 3.0]"),
+            "On a surface that faces the light.",
+        ),
+        key_of("point", "position", POSITION, Required("[1.0, 2.0, 0.0]"), "In the world."),
+        key_of(
+            "point",
+            "intensity",
+            Kind::Vector(numbers(0.0, LARGE, "W sr⁻¹, linear RGB")),
+            Required("[5.0, 5.0, 5.0]"),
+            "Radiant intensity I; the irradiance at distance r is I/r².",
+        ),
+        announced("angle", "Angular size of a directional light, for soft shadows."),
+        announced("radius", "Radius of a point light, for soft shadows."),
+    ],
+};
+
+pub(crate) static OBJECTS: Table = Table {
+    header: "[[objects]]",
+    doc: "A point set with its place, surface and material. A scene has at least one. Its place \
+          in the file, counted from 0, is its index in the picture's `object` channel.",
+    whole: None,
+    keys: &[
+        key(
+            "name",
+            Kind::Text("a name"),
+            Words("the point file's name without folder and extension", "\"knot\""),
+            "Name in messages and statistics.",
+        ),
+        key(
+            "points",
+            Kind::Text("the path of a point file"),
+            Required("\"points/knot.ply\""),
+            "The point file, relative to the scene file's folder.",
+        ),
+        key("transform", Kind::Table(&TRANSFORM), Absent::Table, TRANSFORM.doc),
+        key("surface", Kind::Table(&SURFACE), Absent::Table, SURFACE.doc),
+        key("material", Kind::Table(&MATERIAL), Absent::Table, MATERIAL.doc),
+        key("volume", Kind::Table(&VOLUME), Words("a pure surface", "{}"), VOLUME.doc),
+        announced("filter", "Which points of the file to take."),
+    ],
+};
+
+pub(crate) static TRANSFORM: Table = Table {
+    header: "[objects.transform]",
+    doc: "From the file's coordinates to the world's: scale, then rotate, then translate.",
+    whole: None,
+    keys: &[
+        key("scale", Kind::Number(numbers(1e-12, 1e12, "")), Value("1.0"), "One positive factor."),
+        key(
+            "rotate",
+            Kind::Vector(numbers(-1e6, 1e6, "degrees")),
+            Value("[0.0, 0.0, 0.0]"),
+            "About the fixed axes x, then y, then z, right-handed.",
+        ),
+        key("translate", POSITION, Value("[0.0, 0.0, 0.0]"), "Added last."),
+    ],
+};
+
+pub(crate) static SURFACE: Table = Table {
+    header: "[objects.surface]",
+    doc: "How the surface is fitted. Lengths are scene units, after the transform.",
+    whole: None,
+    keys: &[
+        key("neighbors", count(3, 64, "points"), Value("16"), "Nearest other points of a fit."),
+        key(
+            "polynomial",
+            Kind::Choice(&["full", "incomplete"]),
+            Value("\"full\""),
+            "With the linear terms, or without them as in the paper.",
+        ),
+        key(
+            "feature_size",
+            Kind::Either(&[Kind::Choice(&["adaptive"]), LENGTH]),
+            Value("\"adaptive\""),
+            "The length h that weights and trust radii are measured by: each point's distance to \
+             its farthest neighbour, or one length.",
+        ),
+        key(
+            "trust",
+            Kind::Number(numbers(0.5, 1.0, "")),
+            Value("0.6"),
+            "Trust radius over feature size, b/h.",
+        ),
+        key(
+            "refine",
+            Kind::Choice(&["none", "project"]),
+            Value("\"none\""),
+            "Take the first polynomial hit, or iterate to the exact surface.",
+        ),
+        key(
+            "tolerance",
+            Kind::Number(numbers(1e-9, 1.0, "feature sizes")),
+            Value("1e-4"),
+            "When `project` stops.",
+        ),
+        key(
+            "max_iterations",
+            count(1, 1000, "iterations"),
+            Value("8"),
+            "When `project` stops at the latest.",
+        ),
+        key(
+            "close_gaps",
+            Kind::Bool,
+            Words("not applied today; `true` once it is built", "false"),
+            "Raise single trust radii, at most to the feature size, where trust regions leave a \
+             gap.",
+        ),
+        announced("boundary_clip", "Cut the surface at the rim of an open point set."),
+        announced("normals", "Take the normals from the file."),
+    ],
+};
+
+pub(crate) static MATERIAL: Table = Table {
+    header: "[objects.material]",
+    doc: "How the surface scatters light.",
+    whole: None,
+    keys: &[
+        key(
+            "kind",
+            Kind::Choice(&["diffuse", "mirror", "glass"]),
+            Value("\"diffuse\""),
+            "Lambert on both sides, perfect mirror, or smooth glass.",
+        ),
+        key(
+            "albedo",
+            Kind::Either(&[Kind::Choice(&["points"]), SHARE]),
+            Words("the points' own colours where they have them, else 0.8", "[0.8, 0.8, 0.8]"),
+            "Diffuse: the share of light scattered back; `\"points\"` takes the points' own \
+             colours.",
+        ),
+        key(
+            "texture",
+            Kind::Text("the path of an image"),
+            Words("none", "\"grass.png\""),
+            "Diffuse, instead of `albedo`: an image projected along `texture_axis` over the \
+             object's bounding box.",
+        ),
+        key("texture_axis", Kind::Choice(&["x", "y", "z"]), Value("\"y\""), "See `texture`."),
+        key("reflectance", SHARE, Value("[1.0, 1.0, 1.0]"), "Mirror: the share reflected."),
+        key(
+            "ior",
+            Kind::Either(&[
+                Kind::Number(numbers(0.1, 10.0, "")),
+                Kind::Vector(numbers(0.1, 10.0, "")),
+            ]),
+            Value("1.5"),
+            "Glass: refractive index, one number or one a channel.",
+        ),
+        key(
+            "priority",
+            count(-1_000_000, 1_000_000, ""),
+            Value("0"),
+            "Glass: the highest counts where media overlap; ties go to the last in the scene.",
+        ),
+        key(
+            "absorption",
+            Kind::Vector(numbers(0.0, LARGE, "per scene unit, linear RGB")),
+            Value("[0.0, 0.0, 0.0]"),
+            "Glass: σ in exp(−σℓ) over the length ℓ inside.",
+        ),
+    ],
+};
+
+const AUTO_LENGTH: Kind = Kind::Either(&[Kind::Choice(&["auto"]), LENGTH]);
+
+pub(crate) static VOLUME: Table = Table {
+    header: "[objects.volume]",
+    doc: "A volume made of the points. Left out, the object is a pure surface.",
+    whole: None,
+    keys: &[
+        key(
+            "scalar",
+            Kind::Text("the name of an attribute"),
+            Required("\"density\""),
+            "The points' attribute that is shown.",
+        ),
+        key("kernel", Kind::Choice(&["shepard"]), Value("\"shepard\""), "How points are blended."),
+        key("radius", AUTO_LENGTH, Value("\"auto\""), "Reach of a point."),
+        key(
+            "smoothing",
+            Kind::Either(&[
+                Kind::Choice(&["auto"]),
+                Kind::Number(numbers(SHORT, LARGE, "scene units squared")),
+            ]),
+            Value("\"auto\""),
+            "ρ in the weight exp(−d²/2ρ).",
+        ),
+        key("step", AUTO_LENGTH, Value("\"auto\""), "Distance of the samples along a ray."),
+        key(
+            "boundary",
+            Kind::Text("the name of an attribute, or \"all\", \"none\", \"auto\""),
+            Value("\"none\""),
+            "The attribute that is non-zero on boundary points.",
+        ),
+        key(
+            "transfer",
+            Kind::Tables { table: &TRANSFER, min: 1, max: 4096 },
+            Required("[{ value = 0.0, color = [0.0, 0.0, 1.0], extinction = 0.0 }]"),
+            TRANSFER.doc,
+        ),
+    ],
+};
+
+pub(crate) static TRANSFER: Table = Table {
+    header: "[[objects.volume.transfer]]",
+    doc: "The stops of the transfer function, ascending in value.",
+    whole: None,
+    keys: &[
+        key(
+            "value",
+            Kind::Number(numbers(-LARGE, LARGE, "in the attribute's unit")),
+            Required("0.0"),
+            "The scalar at this stop.",
+        ),
+        key("color", RADIANCE, Required("[0.0, 0.0, 1.0]"), "Emitted colour."),
+        key(
+            "extinction",
+            Kind::Number(numbers(0.0, LARGE, "per scene unit")),
+            Required("0.0"),
+            "σ in α = 1 − exp(−σ·step).",
+        ),
+    ],
+};
+
+impl Kind {
+    /// What a value has to be, in words.
+    pub(crate) fn expected(&self) -> String {
+        match self {
+            Kind::Bool => "true or false".into(),
+            Kind::Integer { min, max, unit } => {
+                format!("an integer from {min} to {max}{}", spaced(unit))
+            }
+            Kind::Number(n) => format!("a number {n}"),
+            Kind::Vector(n) => format!("three numbers {n}"),
+            Kind::Direction => {
+                format!(
+                    "a direction of three numbers from {} to {}, not all zero",
+                    plain(-LARGE),
+                    plain(LARGE)
+                )
+            }
+            Kind::Size { max } => format!("width and height, two integers from 1 to {max} pixels"),
+            Kind::Choice(names) => choice(names),
+            Kind::Text(what) => format!("{what}, a string"),
+            Kind::Either(kinds) => {
+                kinds.iter().map(Kind::expected).collect::<Vec<_>>().join(", or ")
+            }
+            Kind::Table(_) => "a table".into(),
+            Kind::Tables { min: 0, max, .. } => format!("a list of up to {max} tables"),
+            Kind::Tables { min, max, .. } => format!("a list of {min} to {max} tables"),
+            Kind::Announced => "a value whose form is not fixed yet".into(),
+        }
+    }
+}
+
+/// The component range of a direction.
+pub(crate) const DIRECTION: Numbers = numbers(-LARGE, LARGE, "");
+
+impl std::fmt::Display for Numbers {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "from {} to {}{}", plain(self.min), plain(self.max), spaced(self.unit))
+    }
+}
+
+impl Key {
+    /// A value to imitate, as TOML.
+    pub(crate) fn example(&self) -> &'static str {
+        match self.absent {
+            Required(example) | Value(example) | Words(_, example) => example,
+            Absent::Table => "{}",
+        }
+    }
+}
+
+fn spaced(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+}
+
+/// `"a"`, `"a" or "b"`, or `"a", "b" or "c"`.
+fn choice(names: &[&str]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+    match quoted.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+        None => String::new(),
+    }
+}
+
+/// A number as a person would write it.
+pub(crate) fn plain(x: f64) -> String {
+    if x != 0.0 && !(1e-4..1e6).contains(&x.abs()) { format!("{x:e}") } else { format!("{x}") }
+}

@@ -1,0 +1,82 @@
+//! What scene files may say but nothing renders yet. Building a feature deletes its line here.
+//!
+//! A key or value found here is an error that says so, never ignored. The schema and docs/scene.md
+//! carry the same notes.
+
+/// A key, or some values of it, that is known but not built.
+pub(crate) struct NotBuilt {
+    /// The key with its tables, without indices.
+    pub(crate) path: &'static str,
+    pub(crate) when: When,
+    /// What to do instead.
+    pub(crate) instead: &'static str,
+}
+
+/// Which uses of a key are not built.
+pub(crate) enum When {
+    /// Any.
+    Present,
+    /// These choices.
+    Is(&'static [&'static str]),
+    /// Larger integers.
+    Above(i64),
+    /// The value `true`.
+    True,
+}
+
+const fn key(path: &'static str) -> NotBuilt {
+    NotBuilt { path, when: When::Present, instead: "remove it" }
+}
+
+const fn value(path: &'static str, when: When, instead: &'static str) -> NotBuilt {
+    NotBuilt { path, when, instead }
+}
+
+/// The whole list.
+pub(crate) const NOT_BUILT: &[NotBuilt] = &[
+    key("camera.aperture"),
+    key("camera.focus"),
+    key("camera.projection"),
+    value("image.samples", When::Above(1), "use 1"),
+    value("render.fresnel", When::Is(&["sample"]), "use \"transmit\""),
+    value("render.loop", When::Is(&["queue"]), "use \"images\" or \"auto\""),
+    key("render.primary"),
+    key("background.environment"),
+    key("lights.angle"),
+    key("lights.radius"),
+    key("objects.filter"),
+    key("objects.volume"),
+    value("objects.surface.refine", When::Is(&["project"]), "use \"none\""),
+    key("objects.surface.tolerance"),
+    key("objects.surface.max_iterations"),
+    value("objects.surface.close_gaps", When::True, "use false"),
+    key("objects.surface.boundary_clip"),
+    key("objects.surface.normals"),
+    value("objects.material.kind", When::Is(&["mirror", "glass"]), "use \"diffuse\""),
+    key("objects.material.texture"),
+    key("objects.material.texture_axis"),
+    key("objects.material.reflectance"),
+    key("objects.material.ior"),
+    key("objects.material.priority"),
+    key("objects.material.absorption"),
+];
+
+/// The entry of a key, if it has one.
+pub(crate) fn not_built(path: &str) -> Option<&'static NotBuilt> {
+    NOT_BUILT.iter().find(|entry| entry.path == path)
+}
+
+impl NotBuilt {
+    /// What is not built, in words that follow the key's name.
+    pub(crate) fn note(&self) -> String {
+        match self.when {
+            When::Present => "not built yet".into(),
+            When::Is(names) => {
+                let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+                format!("{} not built yet", quoted.join(", "))
+            }
+            When::Above(limit) => format!("more than {limit} not built yet"),
+            When::True => "`true` not built yet".into(),
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Values of a checked table, with the defaults of the table of keys.
+//!
+//! Asking for a key that the table of keys does not have, or as another type, is this crate's
+//! mistake and asserted; the tests `every_built_key_is_read` and
+//! `what_is_left_out_is_the_contracts_default` touch every read.
+
+use crate::document::{Node, Origin, Value, parse_value};
+use crate::keys::{Absent, Table};
+
+/// A table of a document that passed the checks, or one that was left out.
+pub(crate) struct Reader<'a> {
+    table: &'static Table,
+    node: Option<&'a Node>,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(table: &'static Table, node: Option<&'a Node>) -> Self {
+        Self { table, node }
+    }
+
+    /// The table with nothing written in it.
+    pub(crate) fn defaults(table: &'static Table) -> Self {
+        Self { table, node: None }
+    }
+
+    /// A table inside this one.
+    pub(crate) fn table(&self, name: &str, table: &'static Table) -> Reader<'a> {
+        Reader { table, node: self.written(name) }
+    }
+
+    /// The tables of a list inside this one.
+    pub(crate) fn tables(&self, name: &str, table: &'static Table) -> Vec<Reader<'a>> {
+        let items = self.written(name).map_or(&[][..], Node::items);
+        items.iter().map(|item| Reader { table, node: Some(item) }).collect()
+    }
+
+    /// The value that was written, without a default.
+    pub(crate) fn written(&self, name: &str) -> Option<&'a Node> {
+        self.node.and_then(|node| node.get(name))
+    }
+
+    pub(crate) fn flag(&self, name: &str) -> bool {
+        match self.value(name) {
+            Value::Bool(flag) => flag,
+            other => self.unlike("a flag", name, &other),
+        }
+    }
+
+    pub(crate) fn text(&self, name: &str) -> String {
+        match self.value(name) {
+            Value::Text(text) => text,
+            other => self.unlike("a string", name, &other),
+        }
+    }
+
+    pub(crate) fn count(&self, name: &str) -> u32 {
+        match self.value(name) {
+            Value::Integer(integer) if u32::try_from(integer).is_ok() => integer as u32,
+            other => self.unlike("a count", name, &other),
+        }
+    }
+
+    pub(crate) fn counts(&self, name: &str) -> [u32; 2] {
+        match self.value(name) {
+            Value::List(items) => [0, 1].map(|i| match items.get(i).map(|item| &item.value) {
+                Some(Value::Integer(integer)) => u32::try_from(*integer).unwrap_or(u32::MAX),
+                _ => self.unlike("two counts", name, &Value::Date),
+            }),
+            other => self.unlike("two counts", name, &other),
+        }
+    }
+
+    pub(crate) fn number(&self, name: &str) -> f64 {
+        let value = self.value(name);
+        to_number(&value).unwrap_or_else(|| self.unlike("a number", name, &value))
+    }
+
+    pub(crate) fn vector(&self, name: &str) -> [f64; 3] {
+        let value = self.value(name);
+        to_vector(&value).unwrap_or_else(|| self.unlike("a vector", name, &value))
+    }
+
+    /// The value that was written, else the default.
+    pub(crate) fn value(&self, name: &str) -> Value {
+        if let Some(node) = self.written(name) {
+            return node.value.clone();
+        }
+        match self.table.key(name).map(|key| key.absent) {
+            Some(Absent::Value(text)) => parse_value(text, Origin::Given).map(|node| node.value),
+            _ => None,
+        }
+        .unwrap_or_else(|| unreachable!("{} has no default for '{name}'", self.table.header))
+    }
+
+    /// Where a checked value is not what the reader asks for.
+    pub(crate) fn unlike(&self, what: &str, name: &str, found: &Value) -> ! {
+        unreachable!("'{name}' of {} is read as {what} but is {found:?}", self.table.header)
+    }
+}
+
+/// An integer or a float.
+pub(crate) fn to_number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Integer(integer) => Some(*integer as f64),
+        Value::Float(float) => Some(*float),
+        _ => None,
+    }
+}
+
+/// Three numbers.
+pub(crate) fn to_vector(value: &Value) -> Option<[f64; 3]> {
+    let Value::List(items) = value else { return None };
+    let [x, y, z] = items.as_slice() else { return None };
+    Some([to_number(&x.value)?, to_number(&y.value)?, to_number(&z.value)?])
+}

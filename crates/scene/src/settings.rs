@@ -1,0 +1,122 @@
+//! A scene as canonical TOML, for the header of the pictures it makes.
+
+use crate::{
+    Albedo, FeatureSize, Fresnel, Light, Object, Polynomial, RenderSettings, Scene, Surface,
+};
+use std::fmt::{self, Write};
+
+impl Scene {
+    /// Canonical TOML of everything that changes a picture, defaults included: all but
+    /// `cells_per_pass` and `loop`. Loading it as the same file gives the same scene up to those
+    /// two, and the same bytes again.
+    pub fn settings_toml(&self) -> String {
+        let mut out = String::new();
+        // Writing to a string cannot fail.
+        let _ = self.write_settings(&mut out);
+        out
+    }
+
+    fn write_settings(&self, out: &mut String) -> fmt::Result {
+        if let Some(camera) = &self.camera {
+            writeln!(out, "[camera]")?;
+            writeln!(out, "eye = {:?}", camera.eye)?;
+            writeln!(out, "target = {:?}", camera.target)?;
+            writeln!(out, "up = {:?}", camera.up)?;
+            writeln!(out, "vertical_fov = {:?}\n", camera.vertical_fov)?;
+        }
+        writeln!(out, "[image]")?;
+        writeln!(out, "size = {:?}", self.image.size)?;
+        writeln!(out, "samples = {}", self.image.samples)?;
+        writeln!(out, "transparent = {}\n", self.image.transparent)?;
+        write_render(out, &self.render)?;
+        writeln!(out, "[background]")?;
+        writeln!(out, "color = {:?}", self.background.color)?;
+        for light in &self.lights {
+            write_light(out, light)?;
+        }
+        for object in &self.objects {
+            write_object(out, object)?;
+        }
+        Ok(())
+    }
+}
+
+fn write_render(out: &mut String, render: &RenderSettings) -> fmt::Result {
+    let fresnel = match render.fresnel {
+        Fresnel::Transmit => "transmit",
+        Fresnel::Sample => "sample",
+    };
+    writeln!(out, "[render]")?;
+    writeln!(out, "max_bounces = {}", render.max_bounces)?;
+    writeln!(out, "fresnel = \"{fresnel}\"")?;
+    writeln!(out, "seed = {}", render.seed)?;
+    writeln!(out, "grid_resolution = {}\n", render.grid_resolution)
+}
+
+fn write_light(out: &mut String, light: &Light) -> fmt::Result {
+    writeln!(out, "\n[[lights]]")?;
+    match light {
+        Light::Directional { direction, irradiance } => {
+            writeln!(out, "kind = \"directional\"")?;
+            writeln!(out, "direction = {direction:?}")?;
+            writeln!(out, "irradiance = {irradiance:?}")
+        }
+        Light::Point { position, intensity } => {
+            writeln!(out, "kind = \"point\"")?;
+            writeln!(out, "position = {position:?}")?;
+            writeln!(out, "intensity = {intensity:?}")
+        }
+    }
+}
+
+fn write_object(out: &mut String, object: &Object) -> fmt::Result {
+    writeln!(out, "\n[[objects]]")?;
+    writeln!(out, "name = {}", quoted(&object.name))?;
+    writeln!(out, "points = {}", quoted(&object.points_as_written))?;
+    writeln!(out, "\n[objects.transform]")?;
+    writeln!(out, "scale = {:?}", object.transform.scale)?;
+    writeln!(out, "rotate = {:?}", object.transform.rotate)?;
+    writeln!(out, "translate = {:?}", object.transform.translate)?;
+    write_surface(out, &object.surface)?;
+    writeln!(out, "\n[objects.material]")?;
+    writeln!(out, "kind = \"diffuse\"")?;
+    match object.material.albedo {
+        // The default depends on the points, so it has no value to write.
+        Albedo::Default => Ok(()),
+        Albedo::Points => writeln!(out, "albedo = \"points\""),
+        Albedo::Color(color) => writeln!(out, "albedo = {color:?}"),
+    }
+}
+
+fn write_surface(out: &mut String, surface: &Surface) -> fmt::Result {
+    let polynomial = match surface.polynomial {
+        Polynomial::Full => "full",
+        Polynomial::Incomplete => "incomplete",
+    };
+    writeln!(out, "\n[objects.surface]")?;
+    writeln!(out, "neighbors = {}", surface.neighbors)?;
+    writeln!(out, "polynomial = \"{polynomial}\"")?;
+    match surface.feature_size {
+        FeatureSize::Adaptive => writeln!(out, "feature_size = \"adaptive\"")?,
+        FeatureSize::Constant(length) => writeln!(out, "feature_size = {length:?}")?,
+    }
+    writeln!(out, "trust = {:?}", surface.trust)?;
+    // Written because these defaults will change: a header keeps its meaning.
+    writeln!(out, "refine = \"none\"")?;
+    writeln!(out, "close_gaps = false")
+}
+
+/// A TOML basic string.
+pub(crate) fn quoted(text: &str) -> String {
+    let mut out = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' => out.push_str("\\\""),
+            '\\' => out.push_str("\\\\"),
+            c if c.is_control() => out.push_str(&format!("\\u{:04X}", u32::from(c))),
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}
