@@ -48,3 +48,16 @@ fn next_id() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(1);
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Device, DeviceChoice, Instance, InstanceOptions};
+    use std::sync::Arc;
+
+    /// The default device with validation on. Without one the test fails and says what to install.
+    pub(crate) fn device_with_validation() -> Arc<Device> {
+        let instance = Instance::new(&InstanceOptions { validation: true });
+        let instance = instance.unwrap_or_else(|error| panic!("{error}"));
+        Device::open(&instance, &DeviceChoice::Default).unwrap_or_else(|error| panic!("{error}"))
+    }
+}

@@ -282,3 +282,36 @@ pub(crate) fn fence(device: &Device, name: &'static str) -> Result<vk::Fence, Gp
     device.set_name(fence, name);
     Ok(fence)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Buffer;
+    use crate::tests::device_with_validation;
+
+    /// Where all memory is mapped no buffer takes this path by itself.
+    #[test]
+    fn staging_carries_more_than_one_chunk_both_ways() {
+        let device = device_with_validation();
+        let length = 2 * STAGING_BYTES + 5;
+        let bytes: Vec<u8> = (0..length).map(|i| (i % 251) as u8).collect();
+        let buffer = Buffer::new(&device, "target", length as u64 + 3).unwrap();
+        let inner = &buffer.inner;
+        let mut copy = vec![MaybeUninit::new(0_u8); length];
+        // SAFETY: the buffer is alive and of this device, and both ranges end with it.
+        unsafe {
+            device.queue().upload(&device, "target", inner.raw, 3, &bytes).unwrap();
+            device.queue().download(&device, "target", inner.raw, 3, &mut copy).unwrap();
+        }
+        // SAFETY: made with zeros, so initialised whatever was written since.
+        let copied = copy.iter().map(|byte| unsafe { byte.assume_init() });
+        assert!(copied.eq(bytes.iter().copied()), "staged copies differ");
+        let mut direct = vec![0_u8; length];
+        buffer.read(3, &mut direct).unwrap();
+        assert!(direct == bytes, "staged and direct reads differ");
+        drop(buffer);
+        let instance = std::sync::Arc::clone(device.instance());
+        drop(device);
+        assert_eq!(instance.validation_messages(), Vec::<String>::new());
+    }
+}

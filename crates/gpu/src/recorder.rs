@@ -510,3 +510,33 @@ fn describe(names: &[&str]) -> String {
         _ => format!("one of the passes {}", quoted.join(", ")),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::device_with_validation;
+
+    /// The tests that expect silence prove nothing unless this one is loud.
+    #[test]
+    fn a_missing_barrier_is_collected() {
+        let device = device_with_validation();
+        let [a, b] = ["a", "b"].map(|name| Buffer::new(&device, name, 64).unwrap());
+        let mut rec = Recorder::new(&device).unwrap();
+        for skip_barriers in [false, true] {
+            rec.skip_barriers = skip_barriers;
+            rec.fill(&a, 0, 64, 1);
+            rec.copy(&a, 0, &b, 0, 64);
+            rec.submit().unwrap();
+            let messages = device.instance().validation_messages();
+            let has_hazard = messages.iter().any(|message| message.contains("HAZARD"));
+            assert_eq!(has_hazard, skip_barriers, "{messages:?}");
+        }
+    }
+
+    #[test]
+    fn a_lost_device_names_each_pass_once() {
+        assert_eq!(describe(&[]), "fills and copies");
+        assert_eq!(describe(&["trace", "trace"]), "pass 'trace'");
+        assert_eq!(describe(&["a", "b", "a"]), "one of the passes 'a', 'b'");
+    }
+}
