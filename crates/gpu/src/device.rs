@@ -40,6 +40,7 @@ pub struct Limits {
 /// An open device.
 pub struct Device {
     pub(crate) raw: ash::Device,
+    pub(crate) physical: vk::PhysicalDevice,
     pub(crate) queue_family: u32,
     /// The bits of a timestamp that count; zero where the queue has none.
     pub(crate) timestamp_mask: u64,
@@ -97,6 +98,7 @@ impl Device {
         // From here on `Drop` cleans up after a failure.
         let device = Self {
             raw,
+            physical,
             queue_family,
             timestamp_mask: u64::MAX.checked_shr(64 - timestamp_bits.min(64)).unwrap_or(0),
             limits: limits(instance, physical, &vk_limits, timestamp_bits > 0),
@@ -263,5 +265,24 @@ fn limits(
         timestamp_period: if has_timestamps { limits.timestamp_period } else { 0.0 },
         max_texel_buffer_elements: limits.max_texel_buffer_elements,
         heap_bytes: local.map(|heap| heap.size).max().unwrap_or(0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::device_with_validation;
+
+    #[test]
+    fn memory_beyond_the_heap_is_refused_by_name_and_size() {
+        let device = device_with_validation();
+        let size = device.limits().heap_bytes + 1;
+        let requirements =
+            vk::MemoryRequirements { size, alignment: 16, memory_type_bits: u32::MAX };
+        let refused = device.allocate("points", requirements, MemoryLocation::GpuOnly, true);
+        let message = refused.unwrap_err().to_string();
+        assert!(message.contains("'points'"), "{message}");
+        assert!(message.contains(&size.to_string()), "{message}");
+        assert_eq!(device.instance().validation_messages(), Vec::<String>::new());
     }
 }

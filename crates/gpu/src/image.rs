@@ -69,6 +69,22 @@ impl Image {
         let usage = vk::ImageUsageFlags::STORAGE
             | vk::ImageUsageFlags::TRANSFER_SRC
             | vk::ImageUsageFlags::TRANSFER_DST;
+        // SAFETY: the device belongs to this instance.
+        let allowed = unsafe {
+            device.instance().raw().get_physical_device_image_format_properties(
+                device.physical,
+                format.vk(),
+                vk::ImageType::TYPE_2D,
+                vk::ImageTiling::OPTIMAL,
+                usage,
+                vk::ImageCreateFlags::empty(),
+            )
+        }
+        .map_err(GpuError::call("vkGetPhysicalDeviceImageFormatProperties", name))?;
+        let bytes = packed_bytes(size);
+        if bytes > allowed.max_resource_size {
+            return Err(GpuError::OutOfMemory { object: name, bytes });
+        }
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(format.vk())
@@ -165,8 +181,12 @@ impl ImageInner {
 
     /// Bytes of its pixels, row after row without gaps.
     pub(crate) fn packed_bytes(&self) -> u64 {
-        u64::from(self.size[0]) * u64::from(self.size[1]) * ImageFormat::PIXEL_BYTES
+        packed_bytes(self.size)
     }
+}
+
+fn packed_bytes([width, height]: [u32; 2]) -> u64 {
+    u64::from(width) * u64::from(height) * ImageFormat::PIXEL_BYTES
 }
 
 impl Drop for ImageInner {

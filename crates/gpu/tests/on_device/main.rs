@@ -294,6 +294,23 @@ fn an_image_that_is_too_large_is_refused_by_name_and_limit() {
     });
 }
 
+/// The largest square image: more than some devices hold, and less than others do.
+#[test]
+fn an_image_either_fits_or_is_refused_by_name_and_size() {
+    on_device(|device| {
+        let side = device.limits().max_image_dimension_2d;
+        let bytes = u64::from(side) * u64::from(side) * ImageFormat::PIXEL_BYTES;
+        match Image::new(device, "hits", [side, side], ImageFormat::Rgba32Float) {
+            Ok(image) => assert!(image.bytes() >= bytes),
+            Err(error) => {
+                let message = error.to_string();
+                assert!(message.contains("out of device memory for 'hits'"), "{message}");
+                assert!(message.contains(&bytes.to_string()), "{message}");
+            }
+        }
+    });
+}
+
 #[test]
 fn a_dispatch_that_is_too_large_fails_at_submit_and_only_then() {
     on_device(|device| {
