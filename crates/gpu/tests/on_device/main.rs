@@ -247,6 +247,25 @@ fn long_recordings_with_ever_new_buffers_work() {
 }
 
 #[test]
+fn timing_can_be_turned_off_and_on() {
+    on_device(|device| {
+        let kernel = add_kernel(device);
+        let buffer = Buffer::from_slice(device, "buffer", &[0_u32; 4]).unwrap();
+        let mut rec = Recorder::new(device).unwrap();
+        let has_timestamps = device.limits().timestamp_period > 0.0;
+        for (on, rows) in [(false, 0), (true, if has_timestamps { 3 } else { 0 })] {
+            rec.set_timing(on);
+            add(&mut rec, &kernel, &buffer, &buffer, 1);
+            rec.fill(&buffer, 0, 4, 0); // between passes, and charged to neither
+            add(&mut rec, &kernel, &buffer, &buffer, 1);
+            add(&mut rec, &kernel, &buffer, &buffer, 1);
+            assert_eq!(rec.submit().unwrap().passes.len(), rows);
+        }
+        assert_eq!(read(&buffer), [2, 6, 6, 6]);
+    });
+}
+
+#[test]
 fn a_recording_outlives_the_handles_it_was_made_with() {
     on_device(|device| {
         let mut rec = Recorder::new(device).unwrap();
