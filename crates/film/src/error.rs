@@ -1,0 +1,114 @@
+//! What can go wrong between a film and its file.
+
+use std::io;
+use std::path::PathBuf;
+
+/// A picture could not be written or read. The file in question is named in each message.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FilmError {
+    /// The extension names no format.
+    #[error(
+        "{}: found the extension '{found}', expected '.exr', '.png' or '.jpg'; rename the output",
+        path.display()
+    )]
+    UnknownFormat {
+        /// The output as given.
+        path: PathBuf,
+        /// Its extension without the dot, empty if there is none.
+        found: String,
+    },
+    /// The output is a folder.
+    #[error("{}: found a folder, expected a file; add a file name", path.display())]
+    IsFolder {
+        /// The output as given.
+        path: PathBuf,
+    },
+    /// What should be the output's folder is none.
+    #[error(
+        "{}: there is no folder '{}'; create it or choose another",
+        path.display(),
+        folder.display()
+    )]
+    NoFolder {
+        /// The output as given.
+        path: PathBuf,
+        /// The folder it would lie in.
+        folder: PathBuf,
+    },
+    /// The output exists and may not be written to.
+    #[error(
+        "{}: the file exists and is write-protected; allow writing or choose another name",
+        path.display()
+    )]
+    WriteProtected {
+        /// The output as given.
+        path: PathBuf,
+    },
+    /// The file could not be created or written.
+    #[error("{}: cannot write the file; {}", path.display(), next_step(source))]
+    Write {
+        /// The output as given.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The format cannot hold this picture.
+    #[error("{}: cannot encode {width} x {height} pixels: {reason}; choose '.exr'", path.display())]
+    Encode {
+        /// The output as given.
+        path: PathBuf,
+        /// Columns of the picture.
+        width: u32,
+        /// Rows of the picture.
+        height: u32,
+        /// What the encoder said.
+        reason: String,
+    },
+    /// The header cannot be written as given.
+    #[error("{}: cannot write the header: {reason}; shorten or rename the setting", path.display())]
+    Header {
+        /// The output as given.
+        path: PathBuf,
+        /// What is wrong with which attribute.
+        reason: String,
+    },
+    /// The file could not be opened or read.
+    #[error("{}: cannot read the file", path.display())]
+    Read {
+        /// The input as given.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file is not a picture that can be read here.
+    #[error("{}: expected an OpenEXR picture: {reason}; export it again", path.display())]
+    NotExr {
+        /// The input as given.
+        path: PathBuf,
+        /// What was found.
+        reason: String,
+    },
+}
+
+impl FilmError {
+    /// Whether the disk, or the user's share of it, is full.
+    pub fn is_out_of_space(&self) -> bool {
+        matches!(self, Self::Write { source, .. } if is_full(source))
+    }
+}
+
+fn is_full(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded)
+}
+
+/// What to do about an error of writing.
+fn next_step(error: &io::Error) -> &'static str {
+    match error.kind() {
+        _ if is_full(error) => "free some space or choose another disk",
+        io::ErrorKind::PermissionDenied => "allow writing to its folder or choose another",
+        io::ErrorKind::ReadOnlyFilesystem => "choose a folder on another disk",
+        io::ErrorKind::InvalidFilename => "choose a shorter name",
+        _ => "check the disk or choose another folder",
+    }
+}
