@@ -1,1 +1,201 @@
 //! The harness of the end-to-end tests.
+//!
+//! Every device that it opens has the validation layer on, synchronisation validation included, and
+//! [`Bench::drop`] fails the test on any message.
+#![forbid(unsafe_code)]
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    reason = "a test fails by panicking, and says what it skips"
+)]
+
+mod shapes;
+
+pub use shapes::{fibonacci_sphere, grid_points, moved, random, set_of, wavy_sheet};
+
+use film::Film;
+use gpu::{Device, DeviceChoice, Instance, InstanceOptions};
+use kernels::layout;
+use plan::{Picture, Plan};
+use points::{PointSet, Unwatched};
+use reference::Reference;
+use render::Renderer;
+use scene::{Scene, Up};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A device under validation.
+pub struct Bench {
+    instance: Arc<Instance>,
+    /// The device that a user would get.
+    pub device: Arc<Device>,
+}
+
+impl Bench {
+    /// Opens the default device with validation on.
+    #[must_use]
+    pub fn open() -> Self {
+        let instance = Instance::new(&InstanceOptions { validation: true }).unwrap_or_else(|e| {
+            panic!("no Vulkan with validation: {e}; tools/test installs what is missing")
+        });
+        let device = Device::open(&instance, &DeviceChoice::Default).expect("a usable device");
+        Self { instance, device }
+    }
+
+    /// Builds and traces a plan on the device.
+    #[must_use]
+    pub fn render(&self, plan: &Plan) -> Rendered {
+        let mut renderer = Renderer::new(&self.device, plan, &Unwatched).expect("builds");
+        let (picture, stats) = renderer.frame(plan, &Unwatched).expect("renders");
+        let surfaces = renderer.surfaces();
+        let mut polynomials =
+            vec![<layout::Polynomial as bytemuck::Zeroable>::zeroed(); plan.cloud.points.len()];
+        surfaces.polynomials.read(0, &mut polynomials).expect("polynomials");
+        let mut cells = vec![[0u32; 2]; surfaces.grid.cell_count() as usize];
+        surfaces.cells.read(0, &mut cells).expect("cells");
+        let listed = cells.iter().map(|range| range[1]).max().unwrap_or(0);
+        let mut slots = vec![0u32; listed as usize];
+        surfaces.slots.read(0, &mut slots).expect("slots");
+        Rendered {
+            polynomials,
+            cells,
+            slots,
+            passes: stats.passes,
+            tests: picture.tests,
+            film: picture.finish(),
+        }
+    }
+}
+
+impl Drop for Bench {
+    fn drop(&mut self) {
+        let messages = self.instance.validation_messages();
+        if !std::thread::panicking() {
+            assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
+        }
+    }
+}
+
+/// What a render left behind, on a device or on the CPU.
+pub struct Rendered {
+    /// By slot.
+    pub polynomials: Vec<layout::Polynomial>,
+    /// Range of each cell in `slots`.
+    pub cells: Vec<[u32; 2]>,
+    /// Points of the cells.
+    pub slots: Vec<u32>,
+    /// Dispatches of `grid_trace`.
+    pub passes: u32,
+    /// Points tested by all rays.
+    pub tests: u64,
+    /// The picture.
+    pub film: Film,
+}
+
+/// Renders a plan with the f32 twin.
+#[must_use]
+pub fn render_twin(plan: &Plan) -> Rendered {
+    let reference = Reference::<f32>::new(plan, &Unwatched).expect("nobody interrupts");
+    let picture: Picture = reference.frame(plan, &Unwatched).expect("nobody interrupts");
+    Rendered {
+        polynomials: reference.polynomials.iter().map(|&p| p.into()).collect(),
+        cells: reference.lists.cells,
+        slots: reference.lists.slots,
+        passes: 1,
+        tests: picture.tests,
+        film: picture.finish(),
+    }
+}
+
+/// A plan of a scene text whose objects have these point sets, in order. A text without objects gets
+/// one object.
+#[must_use]
+pub fn plan_of(scene_text: &str, sets: &[PointSet]) -> Plan {
+    let mut text = scene_text.to_owned();
+    if !text.contains("[[objects]]") {
+        text += "\n[[objects]]\npoints = \"generated.ply\"\n";
+    }
+    let scene = Scene::from_toml(&text, Path::new("generated.toml"), &[]).expect("a valid scene");
+    let sets: Vec<Arc<PointSet>> = sets.iter().cloned().map(Arc::new).collect();
+    Plan::new(&scene, &sets, None, Up::Y).expect("a plan")
+}
+
+/// Fails unless both are the same to the bit: polynomials, grid, picture, and points tested.
+pub fn assert_same_bits(name: &str, a: &Rendered, b: &Rendered) {
+    for (slot, (p, q)) in a.polynomials.iter().zip(&b.polynomials).enumerate() {
+        assert!(
+            bytemuck::bytes_of(p) == bytemuck::bytes_of(q),
+            "{name}: polynomial {slot}:\n{p:?}\n{q:?}"
+        );
+    }
+    assert_eq!(a.polynomials.len(), b.polynomials.len(), "{name}: polynomials");
+    assert!(a.cells == b.cells, "{name}: cells differ");
+    assert!(a.slots == b.slots, "{name}: points of the cells differ");
+    assert_same_film(name, &a.film, &b.film);
+    assert_eq!(a.tests, b.tests, "{name}: points tested");
+}
+
+/// Fails unless both films are the same to the bit.
+pub fn assert_same_film(name: &str, a: &Film, b: &Film) {
+    assert_eq!((a.size, a.window), (b.size, b.window), "{name}: size");
+    let planes = |film: &Film| -> Vec<(&'static str, Vec<u8>, usize)> {
+        vec![
+            ("object", bytemuck::cast_slice(&film.object).to_vec(), 4),
+            ("Z", bytemuck::cast_slice(&film.depth).to_vec(), 4),
+            ("P", bytemuck::cast_slice(&film.position).to_vec(), 12),
+            ("N", bytemuck::cast_slice(&film.normal).to_vec(), 12),
+            ("RGBA", bytemuck::cast_slice(&film.color).to_vec(), 16),
+        ]
+    };
+    for ((plane, left, size), (_, right, _)) in planes(a).into_iter().zip(planes(b)) {
+        let differing: Vec<usize> = left
+            .chunks(size)
+            .zip(right.chunks(size))
+            .enumerate()
+            .filter_map(|(at, (l, r))| (l != r).then_some(at))
+            .collect();
+        if let Some(&first) = differing.first() {
+            let values = |bytes: &[u8]| -> Vec<f32> {
+                bytes[first * size..(first + 1) * size]
+                    .chunks(4)
+                    .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+                    .collect()
+            };
+            let width = a.window.width as usize;
+            panic!(
+                "{name}: {plane} differs in {} of {} pixels, first at ({}, {}): {:?} and {:?}",
+                differing.len(),
+                left.len() / size,
+                first % width,
+                first / width,
+                values(&left),
+                values(&right),
+            );
+        }
+    }
+}
+
+/// A file of the shared test data, or `None`, said loudly, where the folder is missing.
+#[must_use]
+pub fn shared_data(file: &str) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data").join(file);
+    if path.exists() {
+        return Some(path);
+    }
+    eprintln!("SKIPPED: {file}: {} is missing", path.display());
+    None
+}
+
+/// Background pixels all of whose four neighbours show a surface.
+#[must_use]
+pub fn pinholes(film: &Film) -> usize {
+    let (width, height) = (film.window.width as usize, film.window.height as usize);
+    let hit = |x: usize, y: usize| film.object[y * width + x] >= 0.0;
+    (1..height.max(2) - 1)
+        .flat_map(|y| (1..width.max(2) - 1).map(move |x| (x, y)))
+        .filter(|&(x, y)| {
+            !hit(x, y) && hit(x - 1, y) && hit(x + 1, y) && hit(x, y - 1) && hit(x, y + 1)
+        })
+        .count()
+}

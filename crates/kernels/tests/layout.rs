@@ -1,4 +1,5 @@
 //! Host structs and constants against what the compiled kernels say.
+#![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use kernels::{layout, source, spirv};
 use rspirv::binary::Disassemble;

@@ -1,1 +1,20 @@
 //! Point sets: readers, neighbours, local polynomials and the uniform grid.
+//!
+//! Without the feature `device` this crate knows no Vulkan: points are read, centred, sorted and
+//! searched for neighbours, and the grid is planned. With it, polynomials and the grid are built as
+//! storage buffers of a device.
+#![forbid(unsafe_code)]
+
+mod cloud;
+#[cfg(feature = "device")]
+pub mod device;
+mod grid;
+pub mod neighbors;
+mod set;
+mod watch;
+
+pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange};
+pub use grid::plan_grid;
+pub use neighbors::NeighborSearch;
+pub use set::PointSet;
+pub use watch::{Unwatched, Watch};

@@ -1,1 +1,129 @@
-//! The kernels' twins on the CPU, generic over f32 and f64.
+//! The kernels' twins on the CPU, generic over f32 and f64. No Vulkan here.
+//!
+//! One source: in f32 it must give lavapipe's pixels to the bit, which the end-to-end tests check;
+//! in f64 it says how far both are from the truth. It is also what renders where no Vulkan exists.
+#![forbid(unsafe_code)]
+
+pub mod camera_rays;
+pub mod eigen;
+pub mod fit_polynomials;
+pub mod grid;
+pub mod grid_build;
+pub mod grid_trace;
+pub mod least_squares;
+pub mod polynomial;
+pub mod real;
+pub mod shade;
+
+use grid::Grid;
+use grid_build::CellLists;
+use kernels::layout::{FilmPixel, FitOutcome, GridInfo};
+use plan::{Picture, Plan, Window};
+use points::{NeighborSearch, Watch, plan_grid};
+use polynomial::Polynomial;
+use rayon::prelude::*;
+use real::Real;
+
+/// Points fitted, and rows of pixels traced, between two looks at the watcher.
+const FIT_BATCH: usize = 1 << 14;
+const ROWS: usize = 16;
+
+/// A scene on the CPU, ready to be traced.
+#[derive(Debug)]
+pub struct Reference<R> {
+    /// By slot.
+    pub polynomials: Vec<Polynomial<R>>,
+    /// How each fit ended, by slot.
+    pub outcomes: Vec<FitOutcome>,
+    /// Where the grid lies.
+    pub grid: GridInfo,
+    /// The points of each cell.
+    pub lists: CellLists,
+}
+
+impl<R: Real> Reference<R> {
+    /// Fits the surfaces of a plan and builds the grid; `None` where the watcher asked for an end.
+    #[must_use]
+    pub fn new(plan: &Plan, watch: &dyn Watch) -> Option<Self> {
+        let cloud = &plan.cloud;
+        let mut fitted: Vec<(Polynomial<R>, u32)> = Vec::with_capacity(cloud.points.len());
+        watch.stage("fitting surfaces", cloud.points.len() as u64);
+        for (object, params) in cloud.objects.iter().zip(&plan.fits) {
+            let range = object.range();
+            let search = NeighborSearch::new(&cloud.points[range.clone()], object.first_slot);
+            for first in (0..range.len()).step_by(FIT_BATCH) {
+                if watch.interrupted() {
+                    return None;
+                }
+                let batch = first..range.len().min(first + FIT_BATCH);
+                let k = params.neighbors as usize;
+                let lists = search.nearest(batch.clone(), k);
+                let fits: Vec<_> = lists
+                    .par_chunks(k)
+                    .zip(range.start + first..range.start + batch.end)
+                    .map(|(list, slot)| {
+                        fit_polynomials::fit_polynomial(&cloud.points, slot, list, params)
+                    })
+                    .collect();
+                fitted.extend(fits);
+                watch.done(fitted.len() as u64);
+            }
+        }
+        let outcomes: Vec<FitOutcome> = fitted
+            .iter()
+            .map(|&(polynomial, kind)| FitOutcome { trust: polynomial.trust.to_f32(), kind })
+            .collect();
+        let polynomials: Vec<Polynomial<R>> = fitted.into_iter().map(|fit| fit.0).collect();
+        watch.stage("building the grid", 1);
+        let grid = plan_grid(&cloud.points, &outcomes, plan.grid_resolution);
+        let lists = grid_build::build_grid(&grid, &polynomials, &cloud.order);
+        watch.done(1);
+        Some(Self { polynomials, outcomes, grid, lists })
+    }
+
+    /// Traces one picture of the plan that this was made for; `None` where the watcher asked for an
+    /// end.
+    #[must_use]
+    pub fn frame(&self, plan: &Plan, watch: &dyn Watch) -> Option<Picture> {
+        let mut picture = plan.picture();
+        watch.stage("tracing", plan.window.pixels() as u64);
+        let mut done = 0;
+        for tile in plan.tiles() {
+            for first in (0..tile.size[1]).step_by(ROWS) {
+                if watch.interrupted() {
+                    return None;
+                }
+                let rows = Window {
+                    origin: [tile.origin[0], tile.origin[1] + first],
+                    size: [tile.size[0], (ROWS as u32).min(tile.size[1] - first)],
+                };
+                picture.put(&rows, &self.trace(plan, &rows));
+                done += rows.pixels() as u64;
+                watch.done(done);
+            }
+        }
+        Some(picture)
+    }
+
+    /// The pixels of one window, row by row.
+    #[must_use]
+    pub fn trace(&self, plan: &Plan, window: &Window) -> Vec<FilmPixel> {
+        let grid = Grid::<R>::from(&self.grid);
+        let (camera, params) = (plan.camera_of(window), plan.shade_of(window));
+        let shading = shade::Shading {
+            params: &params,
+            objects: &plan.objects,
+            colors: &plan.colors,
+            lights: &plan.lights,
+        };
+        (0..window.size[0] * window.size[1])
+            .into_par_iter()
+            .map(|i| {
+                let pixel = [i % window.size[0], i / window.size[0]];
+                let mut ray = camera_rays::camera_ray(&camera, &grid, pixel);
+                grid_trace::grid_trace(&mut ray, &grid, &self.lists, &self.polynomials);
+                shade::shade(&ray, &self.polynomials, &shading)
+            })
+            .collect()
+    }
+}

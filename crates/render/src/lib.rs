@@ -1,1 +1,34 @@
-//! The frontend: plans a render and drives the passes on a device.
+//! The frontend: drives the passes of a [`Plan`] on a device.
+//!
+//! [`Renderer::new`] builds the surfaces once; [`Renderer::frame`] traces them, as often as one
+//! likes. A tile's rays live in four storage images, and four more that a pass writes: after each
+//! pass they swap, until no ray lives (section 5 of the paper). Any number of cells a pass gives the
+//! same bytes, which the test `every_k_gives_the_same_bytes` checks.
+#![forbid(unsafe_code)]
+
+mod frame;
+mod passes;
+mod state;
+
+pub use frame::{FrameStats, Renderer};
+pub use points::device::BuildError;
+
+/// Why a frame could not be finished.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The device refused or failed.
+    #[error(transparent)]
+    Gpu(#[from] gpu::GpuError),
+    /// The watcher asked for an end.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl From<BuildError> for RenderError {
+    fn from(error: BuildError) -> Self {
+        match error {
+            BuildError::Gpu(error) => Self::Gpu(error),
+            BuildError::Interrupted => Self::Interrupted,
+        }
+    }
+}

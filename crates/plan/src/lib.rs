@@ -1,0 +1,303 @@
+//! The plan of a render: plain data made before a device is touched.
+//!
+//! A checked scene and its point sets go in; centred points, kernel parameters, lights, colours and
+//! the tiles of the picture come out. The GPU (`render`) and the CPU (`reference`) execute the same
+//! plan, and hand back the same [`layout::FilmPixel`]s for [`Plan::picture`].
+#![forbid(unsafe_code)]
+
+mod camera;
+mod picture;
+
+pub use camera::View;
+pub use picture::Picture;
+
+use kernels::layout::{
+    self, CameraParams, FIT_FULL, FIT_INCOMPLETE, FitParams, LIGHT_DIRECTIONAL, LIGHT_POINT, NONE,
+    ObjectInfo, ShadeParams,
+};
+use points::{Cloud, CloudError, ObjectPoints, PointSet};
+use scene::{Albedo, FeatureSize, Light, Object, Polynomial, Scene, Up};
+use std::sync::Arc;
+
+/// Albedo of objects whose points have no colours and whose material names none.
+const DEFAULT_ALBEDO: [f32; 3] = [0.8; 3];
+/// Tiles have at most this many pixels a side: their ray state is 128 MiB.
+pub const TILE_SIDE: u32 = 1024;
+
+/// A rectangle of pixels of the full image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Window {
+    /// Column and row of the first pixel.
+    pub origin: [u32; 2],
+    /// Columns and rows.
+    pub size: [u32; 2],
+}
+
+impl Window {
+    /// Pixels.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        self.size[0] as usize * self.size[1] as usize
+    }
+}
+
+/// Everything that a render needs, on any device.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The points of all objects.
+    pub cloud: Cloud,
+    /// One an object: parameters of `fit_polynomials` over all its points.
+    pub fits: Vec<FitParams>,
+    /// Cells along the grid's longest axis; 0: chosen from the points.
+    pub grid_resolution: u32,
+    /// Cells a ray may cross in one pass; 0: the device decides. Changes no pixel.
+    pub cells_per_pass: u32,
+    /// Parameters of `camera_rays`, but for the tile.
+    pub camera: CameraParams,
+    /// Parameters of `shade`, but for the tile.
+    pub shade: ShadeParams,
+    /// What shading needs of each object.
+    pub objects: Vec<ObjectInfo>,
+    /// Three floats a point of each object that has colours, by slot.
+    pub colors: Vec<f32>,
+    /// All lights.
+    pub lights: Vec<layout::Light>,
+    /// The full image: columns and rows.
+    pub image_size: [u32; 2],
+    /// What of it is rendered.
+    pub window: Window,
+    /// Names of the objects, for messages.
+    pub names: Vec<String>,
+    transparent: bool,
+    provenance: film::Provenance,
+}
+
+/// What is wrong with a scene once its points are known.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// The points cannot be rendered together.
+    #[error(transparent)]
+    Points(#[from] CloudError),
+    /// A material asks for colours that the file lacks.
+    #[error(
+        "object '{name}': material.albedo is \"points\" but {file} has no colours; give a colour \
+         such as [0.8, 0.8, 0.8] or leave albedo out"
+    )]
+    NoColors {
+        /// The object.
+        name: String,
+        /// Its point file.
+        file: String,
+    },
+    /// A crop that is not inside the picture.
+    #[error(
+        "--crop {x},{y},{width},{height} does not lie inside the picture of {image_width}x{image_height} \
+         pixels; give X,Y,W,H with W and H at least 1",
+        x = .crop.origin[0], y = .crop.origin[1], width = .crop.size[0], height = .crop.size[1],
+        image_width = .image[0], image_height = .image[1]
+    )]
+    Crop {
+        /// What was asked for.
+        crop: Window,
+        /// Columns and rows of the picture.
+        image: [u32; 2],
+    },
+    /// More colours than 32 bits of offset can count.
+    #[error(
+        "the scene has {0} coloured points but at most 1000000000 are supported; thin the point sets"
+    )]
+    TooManyColors(usize),
+}
+
+impl Plan {
+    /// Plans a render of `scene`, whose objects have the point sets `sets`, in order. `crop` is what
+    /// of the picture to render, all of it when `None`; `up` turns the view where the scene has no
+    /// camera.
+    ///
+    /// # Errors
+    /// Points that f32 cannot bear, missing colours, a crop outside of the picture.
+    pub fn new(
+        scene: &Scene,
+        sets: &[Arc<PointSet>],
+        crop: Option<Window>,
+        up: Up,
+    ) -> Result<Self, PlanError> {
+        assert_eq!(scene.objects.len(), sets.len(), "one point set an object");
+        let image_size = scene.image.size;
+        let window = checked_crop(crop, image_size)?;
+        let world: Vec<Vec<[f64; 3]>> = scene
+            .objects
+            .iter()
+            .zip(sets)
+            .map(|(object, set)| set.positions.iter().map(|&p| object.transform.apply(p)).collect())
+            .collect();
+        let object_points: Vec<ObjectPoints<'_>> = world
+            .iter()
+            .zip(sets)
+            .map(|(positions, set)| ObjectPoints { positions, file_index: &set.file_index })
+            .collect();
+        let cloud = Cloud::new(&object_points)?;
+        let fits = scene
+            .objects
+            .iter()
+            .zip(0..)
+            .map(|(object, index)| fit_params(object, index, &cloud))
+            .collect();
+        let (objects, colors) = object_infos(scene, sets, &cloud)?;
+        let camera = scene.camera.unwrap_or_else(|| camera::frame(cloud.bounds, up));
+        let view = View::new(&camera, image_size, cloud.origin);
+        let lights = scene.lights.iter().map(|light| local_light(light, cloud.origin)).collect();
+        let framed = Scene { camera: Some(camera), ..scene.clone() };
+        Ok(Self {
+            fits,
+            grid_resolution: scene.render.grid_resolution,
+            cells_per_pass: scene.render.cells_per_pass,
+            camera: view.params,
+            shade: ShadeParams {
+                forward: view.params.forward,
+                light_count: scene.lights.len() as u32,
+                background: scene.background.color.map(|c| c as f32),
+                transparent: u32::from(scene.image.transparent),
+                tile_size: [0, 0],
+            },
+            objects,
+            colors,
+            lights,
+            image_size,
+            window,
+            names: scene.objects.iter().map(|object| object.name.clone()).collect(),
+            transparent: scene.image.transparent,
+            provenance: film::Provenance {
+                world_to_camera: view.world_to_camera,
+                world_to_ndc: view.world_to_ndc,
+                origin: cloud.origin,
+                settings: vec![("scene".to_owned(), framed.settings_toml())],
+            },
+            cloud,
+        })
+    }
+
+    /// The tiles of the picture, row by row.
+    #[must_use]
+    pub fn tiles(&self) -> Vec<Window> {
+        let starts = |axis: usize| {
+            let (first, count) = (self.window.origin[axis], self.window.size[axis]);
+            (first..first + count)
+                .step_by(TILE_SIDE as usize)
+                .map(move |at| (at, TILE_SIDE.min(first + count - at)))
+        };
+        starts(1)
+            .flat_map(|(y, height)| {
+                starts(0).map(move |(x, width)| Window { origin: [x, y], size: [width, height] })
+            })
+            .collect()
+    }
+
+    /// Parameters of `camera_rays` for one tile.
+    #[must_use]
+    pub fn camera_of(&self, tile: &Window) -> CameraParams {
+        CameraParams { tile_origin: tile.origin, tile_size: tile.size, ..self.camera }
+    }
+
+    /// Parameters of `shade` for one tile.
+    #[must_use]
+    pub fn shade_of(&self, tile: &Window) -> ShadeParams {
+        ShadeParams { tile_size: tile.size, ..self.shade }
+    }
+
+    /// An empty picture, to be filled tile by tile.
+    #[must_use]
+    pub fn picture(&self) -> Picture {
+        Picture::new(self)
+    }
+
+    /// What an EXR says of this render.
+    #[must_use]
+    pub fn provenance(&self) -> &film::Provenance {
+        &self.provenance
+    }
+}
+
+fn checked_crop(crop: Option<Window>, image: [u32; 2]) -> Result<Window, PlanError> {
+    let crop = crop.unwrap_or(Window { origin: [0, 0], size: image });
+    let inside = (0..2).all(|axis| {
+        crop.size[axis] > 0
+            && crop.origin[axis].checked_add(crop.size[axis]).is_some_and(|end| end <= image[axis])
+    });
+    if inside { Ok(crop) } else { Err(PlanError::Crop { crop, image }) }
+}
+
+fn fit_params(object: &Object, index: u32, cloud: &Cloud) -> FitParams {
+    let slots = cloud.objects[index as usize];
+    FitParams {
+        first_slot: slots.first_slot,
+        point_count: slots.count,
+        neighbors: object.surface.neighbors.min(slots.count.saturating_sub(1)).max(1),
+        polynomial: match object.surface.polynomial {
+            Polynomial::Full => FIT_FULL,
+            Polynomial::Incomplete => FIT_INCOMPLETE,
+        },
+        feature_size: match object.surface.feature_size {
+            FeatureSize::Adaptive => 0.0,
+            FeatureSize::Constant(h) => h as f32,
+        },
+        trust: object.surface.trust as f32,
+        object: index,
+        first_listed: slots.first_slot,
+    }
+}
+
+fn object_infos(
+    scene: &Scene,
+    sets: &[Arc<PointSet>],
+    cloud: &Cloud,
+) -> Result<(Vec<ObjectInfo>, Vec<f32>), PlanError> {
+    let mut colors: Vec<f32> = Vec::new();
+    let mut infos = Vec::new();
+    for (index, (object, set)) in scene.objects.iter().zip(sets).enumerate() {
+        let own = match (object.material.albedo, &set.colors) {
+            (Albedo::Color(_), _) | (Albedo::Default, None) => None,
+            (_, Some(colors)) => Some(colors),
+            (Albedo::Points, None) => {
+                let file = object.points.display().to_string();
+                return Err(PlanError::NoColors { name: object.name.clone(), file });
+            }
+        };
+        infos.push(ObjectInfo {
+            albedo: match object.material.albedo {
+                Albedo::Color(color) => color.map(|c| c as f32),
+                Albedo::Default | Albedo::Points => DEFAULT_ALBEDO,
+            },
+            first_color: if own.is_some() { colors.len() as u32 } else { NONE },
+            first_slot: cloud.objects[index].first_slot,
+            pad0: 0,
+            pad1: 0,
+            pad2: 0,
+        });
+        if let Some(own) = own {
+            colors.extend(cloud.by_slot(index, own).iter().flatten());
+        }
+        if colors.len() > 3_000_000_000 {
+            return Err(PlanError::TooManyColors(colors.len() / 3));
+        }
+    }
+    Ok((infos, colors))
+}
+
+fn local_light(light: &Light, origin: [f64; 3]) -> layout::Light {
+    let f32s = |v: [f64; 3]| v.map(|x| x as f32);
+    match *light {
+        Light::Directional { direction, irradiance } => layout::Light {
+            vector: (-glam::DVec3::from(direction).normalize()).as_vec3().into(),
+            kind: LIGHT_DIRECTIONAL,
+            strength: f32s(irradiance),
+            pad: 0,
+        },
+        Light::Point { position, intensity } => layout::Light {
+            vector: f32s([0, 1, 2].map(|axis| position[axis] - origin[axis])),
+            kind: LIGHT_POINT,
+            strength: f32s(intensity),
+            pad: 0,
+        },
+    }
+}

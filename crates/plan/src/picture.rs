@@ -1,0 +1,73 @@
+//! From the pixels that kernels wrote to the film that files are made of.
+
+use crate::{Plan, Window};
+use film::Film;
+use kernels::layout::FilmPixel;
+
+/// A picture that is being filled, tile by tile, and what its rays did.
+#[derive(Debug)]
+pub struct Picture {
+    film: Film,
+    origin: [f64; 3],
+    /// Points tested by all rays.
+    pub tests: u64,
+    /// Pixels that hit a surface.
+    pub hits: u64,
+}
+
+impl Picture {
+    pub(crate) fn new(plan: &Plan) -> Self {
+        let pixels = plan.window.pixels();
+        Self {
+            film: Film {
+                size: plan.image_size,
+                window: film::Window {
+                    x: plan.window.origin[0],
+                    y: plan.window.origin[1],
+                    width: plan.window.size[0],
+                    height: plan.window.size[1],
+                },
+                transparent: plan.transparent,
+                color: vec![[0.0; 4]; pixels],
+                depth: vec![f32::INFINITY; pixels],
+                position: vec![[0.0; 3]; pixels],
+                normal: vec![[0.0; 3]; pixels],
+                object: vec![-1.0; pixels],
+            },
+            origin: plan.cloud.origin,
+            tests: 0,
+            hits: 0,
+        }
+    }
+
+    /// Puts the pixels of one tile, row by row, where they belong.
+    pub fn put(&mut self, tile: &Window, pixels: &[FilmPixel]) {
+        assert_eq!(pixels.len(), tile.pixels(), "one pixel for each of the tile");
+        let film = &mut self.film;
+        let (x0, y0) = (tile.origin[0] - film.window.x, tile.origin[1] - film.window.y);
+        for (row, pixels) in (y0..).zip(pixels.chunks(tile.size[0] as usize)) {
+            let first = row as usize * film.window.width as usize + x0 as usize;
+            for (at, pixel) in (first..).zip(pixels) {
+                self.tests += u64::from(pixel.counts[0]);
+                let [x, y, z, depth] = pixel.position_depth;
+                let [nx, ny, nz, object] = pixel.normal_object;
+                film.color[at] = pixel.color;
+                film.depth[at] = depth;
+                film.normal[at] = [nx, ny, nz];
+                film.object[at] = object;
+                if object >= 0.0 {
+                    self.hits += 1;
+                    let local = [x, y, z];
+                    film.position[at] =
+                        [0, 1, 2].map(|axis| (self.origin[axis] + f64::from(local[axis])) as f32);
+                }
+            }
+        }
+    }
+
+    /// The finished film.
+    #[must_use]
+    pub fn finish(self) -> Film {
+        self.film
+    }
+}

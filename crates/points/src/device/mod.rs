@@ -1,0 +1,130 @@
+//! Polynomials and the uniform grid, built as storage buffers of a device (\[T\] §4, §5).
+//!
+//! Count, scan, stable scatter: the order in a cell is the order of (object, place in the file), so
+//! a render gives the same bytes from run to run. No float atomics, no atomic append.
+
+mod fit;
+mod grid_build;
+mod scan;
+mod sort;
+
+use crate::{Cloud, NeighborSearch, Watch, plan_grid};
+use fit::FitPolynomials;
+use gpu::{Buffer, Device, GpuError, Recorder};
+use grid_build::GridBuild;
+use kernels::layout::{FitOutcome, FitParams, GridInfo, Polynomial};
+use std::sync::Arc;
+
+/// Points whose neighbours are listed and fitted in one go: 8 MiB of lists at k = 16.
+const FIT_BATCH: usize = 1 << 17;
+
+/// What a renderer traces.
+#[derive(Debug)]
+pub struct Surfaces {
+    /// [`Polynomial`]s by slot.
+    pub polynomials: Buffer,
+    /// How each fit ended, by slot.
+    pub outcomes: Vec<FitOutcome>,
+    /// Where the grid lies.
+    pub grid: GridInfo,
+    /// The same, for kernels.
+    pub grid_info: Buffer,
+    /// First and past-the-last entry of each cell in `slots`.
+    pub cells: Buffer,
+    /// Points, cell after cell.
+    pub slots: Buffer,
+}
+
+/// Why surfaces could not be built.
+#[derive(Debug, thiserror::Error)]
+pub enum BuildError {
+    /// The device refused or failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The watcher asked for an end.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl Surfaces {
+    /// Fits every point of the cloud and sorts the fits into a grid. `fits` has one entry an object;
+    /// `resolution` is the number of cells along the grid's longest axis, 0: chosen.
+    ///
+    /// # Errors
+    /// A device without the memory, a buffer over its limits, a lost device, an interruption.
+    pub fn build(
+        device: &Arc<Device>,
+        cloud: &Cloud,
+        fits: &[FitParams],
+        resolution: u32,
+        watch: &dyn Watch,
+    ) -> Result<Self, BuildError> {
+        let count = cloud.points.len();
+        let polynomials =
+            Buffer::new(device, "polynomials", (count * size_of::<Polynomial>()) as u64)?;
+        let outcomes = fit_all(device, cloud, fits, &polynomials, watch)?;
+        watch.stage("building the grid", 1);
+        let grid = plan_grid(&cloud.points, &outcomes, resolution);
+        let grid_info = Buffer::from_slice(device, "grid info", &[grid])?;
+        let lists = GridBuild::new(device)?.run(&grid, &grid_info, &polynomials, &cloud.order)?;
+        watch.done(1);
+        Ok(Self { polynomials, outcomes, grid, grid_info, cells: lists.cells, slots: lists.slots })
+    }
+
+    /// Bytes on the device that tracing needs.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.polynomials.bytes() + self.cells.bytes() + self.slots.bytes()
+    }
+}
+
+/// Fits batch after batch, so that lists of neighbours never fill memory.
+fn fit_all(
+    device: &Arc<Device>,
+    cloud: &Cloud,
+    fits: &[FitParams],
+    polynomials: &Buffer,
+    watch: &dyn Watch,
+) -> Result<Vec<FitOutcome>, BuildError> {
+    let count = cloud.points.len();
+    let points = Buffer::from_slice(device, "points", &cloud.points)?;
+    let outcomes = Buffer::new(device, "fit outcomes", (count * size_of::<FitOutcome>()) as u64)?;
+    let pass = FitPolynomials::new(device)?;
+    let mut recorder = Recorder::new(device)?;
+    watch.stage("fitting surfaces", count as u64);
+    let mut done = 0;
+    for (object, fit) in cloud.objects.iter().zip(fits) {
+        let range = object.range();
+        let search = NeighborSearch::new(&cloud.points[range.clone()], object.first_slot);
+        for first in (0..range.len()).step_by(FIT_BATCH) {
+            if watch.interrupted() {
+                return Err(BuildError::Interrupted);
+            }
+            let batch = first..range.len().min(first + FIT_BATCH);
+            let lists = search.nearest(batch.clone(), fit.neighbors as usize);
+            let neighbors = Buffer::from_slice(device, "neighbors", &lists)?;
+            let first_slot = object.first_slot + first as u32;
+            let point_count = batch.len() as u32;
+            let params = FitParams { first_slot, point_count, first_listed: first_slot, ..*fit };
+            let io = fit::FitPolynomialsIo {
+                points: &points,
+                neighbors: &neighbors,
+                polynomials,
+                outcomes: &outcomes,
+            };
+            pass.record(&mut recorder, io, &params);
+            recorder.submit()?;
+            done += batch.len() as u64;
+            watch.done(done);
+        }
+    }
+    let mut read = vec![FitOutcome { trust: 0.0, kind: 0 }; count];
+    outcomes.read(0, &mut read)?;
+    Ok(read)
+}
+
+/// Invocations for a list of `count` entries: over two axes where one would be too long.
+pub(crate) fn line(count: u32) -> [u32; 3] {
+    const ROW: u32 = 1 << 20;
+    if count <= ROW { [count, 1, 1] } else { [ROW, count.div_ceil(ROW), 1] }
+}

@@ -1,0 +1,186 @@
+//! Twin of `glsl/shared/grid.glsl`: cells of the uniform grid, and a ray's steps through them.
+
+use crate::real::{NO_HIT, Real, V3};
+use kernels::layout::{GridInfo, NONE};
+
+const BALL_MARGIN: f64 = 1.0001;
+const PARALLEL: f64 = 1e-20;
+
+/// The grid's place and size, in either precision.
+#[derive(Debug, Clone, Copy)]
+pub struct Grid<R> {
+    origin: V3<R>,
+    edge: R,
+    resolution: [u32; 3],
+    inverse_edge: R,
+}
+
+impl<R: Real> From<&GridInfo> for Grid<R> {
+    fn from(info: &GridInfo) -> Self {
+        Self {
+            origin: V3::of_f32(info.origin),
+            edge: R::of_f32(info.edge),
+            resolution: info.resolution,
+            inverse_edge: R::of_f32(info.inverse_edge),
+        }
+    }
+}
+
+/// A trust ball, grown so that rounding loses no cell that a hit lies in.
+#[derive(Debug, Clone, Copy)]
+pub struct Ball<R> {
+    center: V3<R>,
+    radius: R,
+}
+
+impl<R: Real> Ball<R> {
+    /// Around the center, with the trust radius b.
+    pub fn new(center: V3<R>, trust: R) -> Self {
+        Self { center, radius: trust * R::of(BALL_MARGIN) }
+    }
+}
+
+impl<R: Real> Grid<R> {
+    /// Cells in all.
+    #[must_use]
+    pub fn cell_count(&self) -> u32 {
+        self.resolution.iter().product()
+    }
+
+    /// Place of a cell in the list of cells.
+    #[must_use]
+    pub fn cell_id(&self, cell: [u32; 3]) -> u32 {
+        cell[0] + self.resolution[0] * (cell[1] + self.resolution[1] * cell[2])
+    }
+
+    /// Inverse of [`Grid::cell_id`].
+    #[must_use]
+    pub fn cell_of_id(&self, id: u32) -> [u32; 3] {
+        let row = id / self.resolution[0];
+        [id % self.resolution[0], row % self.resolution[1], row / self.resolution[1]]
+    }
+
+    fn cell_of(&self, x: V3<R>) -> [u32; 3] {
+        let at = (x - self.origin).times(self.inverse_edge);
+        [0, 1, 2].map(|axis| {
+            let last = R::of_u32(self.resolution[axis]) - R::of(1.0);
+            at.0[axis].floor().max(R::of(0.0)).min(last).to_u32()
+        })
+    }
+
+    /// Lowest and highest cell (inclusive) of those that the ball could meet.
+    #[must_use]
+    pub fn cells_around(&self, ball: &Ball<R>) -> [[u32; 3]; 2] {
+        let radius = V3::splat(ball.radius);
+        [self.cell_of(ball.center - radius), self.cell_of(ball.center + radius)]
+    }
+
+    /// Whether the ball and the cell's box have a point in common.
+    #[must_use]
+    pub fn ball_meets_cell(&self, cell: [u32; 3], ball: &Ball<R>) -> bool {
+        let corner = |offset: u32| {
+            V3([0, 1, 2]
+                .map(|axis| self.origin.0[axis] + R::of_u32(cell[axis] + offset) * self.edge))
+        };
+        let (low, high) = (corner(0), corner(1));
+        let away =
+            (low - ball.center).zip(ball.center - high, R::max).zip(V3::splat(R::of(0.0)), R::max);
+        away.dot(away) <= ball.radius * ball.radius
+    }
+
+    /// Distances along the ray to the faces of the cell that it leaves through, axis by axis.
+    #[must_use]
+    pub fn crossings(&self, cell: [u32; 3], o: V3<R>, d: V3<R>) -> V3<R> {
+        V3([0, 1, 2].map(|axis| {
+            let d = d.0[axis];
+            let forth = u32::from(d > R::of(0.0));
+            let face = self.origin.0[axis] + R::of_u32(cell[axis] + forth) * self.edge;
+            if d.abs() > R::of(PARALLEL) { (face - o.0[axis]) / d } else { R::of(NO_HIT) }
+        }))
+    }
+
+    /// The first cell of a ray that starts anywhere, or `NONE` where it misses the grid.
+    #[must_use]
+    pub fn enter(&self, o: V3<R>, d: V3<R>) -> u32 {
+        let (mut near, mut far) = (R::of(0.0), R::of(NO_HIT));
+        for axis in 0..3 {
+            let (o, d) = (o.0[axis], d.0[axis]);
+            let low = self.origin.0[axis];
+            let high = low + R::of_u32(self.resolution[axis]) * self.edge;
+            if d.abs() > R::of(PARALLEL) {
+                let (a, b) = ((low - o) / d, (high - o) / d);
+                near = near.max(a.min(b));
+                far = far.min(a.max(b));
+            } else if !(o >= low && o <= high) {
+                (near, far) = (R::of(NO_HIT), R::of(-NO_HIT));
+            }
+        }
+        if near > far { NONE } else { self.cell_id(self.cell_of(o + d.times(near))) }
+    }
+
+    /// The next cell behind the face at the nearest crossing (ties: the lower axis), or `NONE`
+    /// outside.
+    #[must_use]
+    pub fn step(&self, mut cell: [u32; 3], t: V3<R>, d: V3<R>) -> u32 {
+        let axis = if t.x() <= t.y() && t.x() <= t.z() {
+            0
+        } else if t.y() <= t.z() {
+            1
+        } else {
+            2
+        };
+        let back = if d.0[axis] > R::of(0.0) { 1 } else { u32::MAX };
+        cell[axis] = cell[axis].wrapping_add(back);
+        if cell[axis] >= self.resolution[axis] { NONE } else { self.cell_id(cell) }
+    }
+}
+
+/// The least of three crossings.
+pub fn nearest_crossing<R: Real>(t: V3<R>) -> R {
+    t.x().min(t.y().min(t.z()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit_cells(resolution: [u32; 3]) -> Grid<f64> {
+        Grid::from(&GridInfo { origin: [0.0; 3], edge: 1.0, resolution, inverse_edge: 1.0 })
+    }
+
+    fn walk(grid: &Grid<f64>, o: V3<f64>, d: V3<f64>) -> Vec<[u32; 3]> {
+        let mut visited = Vec::new();
+        let mut id = grid.enter(o, d);
+        while id != NONE {
+            let cell = grid.cell_of_id(id);
+            visited.push(cell);
+            id = grid.step(cell, grid.crossings(cell, o, d), d);
+        }
+        visited
+    }
+
+    #[test]
+    fn a_ray_visits_the_cells_on_its_way_in_order() {
+        let grid = unit_cells([4, 4, 4]);
+        let visited = walk(&grid, V3([-1.0, 0.5, 0.5]), V3([1.0, 0.0, 0.0]));
+        assert_eq!(visited, [[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]]);
+        let visited = walk(&grid, V3([3.5, 3.5, 2.5]), V3([0.0, 0.0, -1.0]));
+        assert_eq!(visited, [[3, 3, 2], [3, 3, 1], [3, 3, 0]], "from inside, backwards");
+        assert!(walk(&grid, V3([-1.0, 4.5, 0.5]), V3([1.0, 0.0, 0.0])).is_empty(), "misses");
+        assert!(walk(&grid, V3([5.0, 0.5, 0.5]), V3([1.0, 0.0, 0.0])).is_empty(), "behind");
+        let diagonal = V3([1.0, 1.0, 1.0]).normalize();
+        let visited = walk(&grid, V3::splat(-1.0), diagonal);
+        assert_eq!((visited.first(), visited.last()), (Some(&[0, 0, 0]), Some(&[3, 3, 3])));
+    }
+
+    #[test]
+    fn a_ball_meets_the_cells_it_touches_and_no_corner_it_misses() {
+        let grid = unit_cells([3, 3, 3]);
+        let ball = Ball::new(V3([1.5, 1.5, 1.5]), 0.8);
+        let [low, high] = grid.cells_around(&ball);
+        assert_eq!((low, high), ([0, 0, 0], [2, 2, 2]));
+        let met = (0..27).filter(|&id| grid.ball_meets_cell(grid.cell_of_id(id), &ball)).count();
+        // The middle, 6 faces at 0.5, 12 edges at 0.71; the 8 corners at 0.87 are out of reach.
+        assert_eq!(met, 19);
+    }
+}

@@ -1,0 +1,52 @@
+//! Twin of the grid build: `grid_count`, `grid_emit`, the scan, the sort and `grid_ranges`.
+//!
+//! A prefix sum and a stable sort have but one result, so the twin takes the library's.
+
+use crate::grid::{Ball, Grid};
+use crate::polynomial::Polynomial;
+use crate::real::Real;
+use kernels::layout::GridInfo;
+
+/// The points of each cell.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct CellLists {
+    /// First and past-the-last entry of each cell in `slots`; empty cells have zeros.
+    pub cells: Vec<[u32; 2]>,
+    /// Slots, cell after cell, in the order of (object, place in the file) within a cell.
+    pub slots: Vec<u32>,
+}
+
+/// Lists the points whose trust ball meets each cell. `order` holds slots by ordinal.
+#[must_use]
+pub fn build_grid<R: Real>(
+    info: &GridInfo,
+    polynomials: &[Polynomial<R>],
+    order: &[u32],
+) -> CellLists {
+    let grid = Grid::<R>::from(info);
+    let mut pairs: Vec<(u32, u32)> = Vec::new();
+    for &slot in order {
+        let polynomial = &polynomials[slot as usize];
+        if polynomial.trust > R::of(0.0) {
+            let ball = Ball::new(polynomial.center, polynomial.trust);
+            let [low, high] = grid.cells_around(&ball);
+            for z in low[2]..=high[2] {
+                for y in low[1]..=high[1] {
+                    let row = (low[0]..=high[0]).map(|x| [x, y, z]);
+                    let met = row.filter(|&cell| grid.ball_meets_cell(cell, &ball));
+                    pairs.extend(met.map(|cell| (grid.cell_id(cell), slot)));
+                }
+            }
+        }
+    }
+    pairs.sort_by_key(|pair| pair.0);
+    let mut cells = vec![[0, 0]; grid.cell_count() as usize];
+    for (at, &(cell, _)) in pairs.iter().enumerate() {
+        let range = &mut cells[cell as usize];
+        if range[1] == 0 {
+            range[0] = at as u32;
+        }
+        range[1] = at as u32 + 1;
+    }
+    CellLists { cells, slots: pairs.into_iter().map(|pair| pair.1).collect() }
+}

@@ -1,0 +1,51 @@
+//! Twin of `grid_trace`: a ray's way through the grid to its nearest hit (\[T\] §5).
+//!
+//! The kernel may stop after any cell and go on in the next pass with the same bits, so the twin
+//! goes the whole way at once.
+
+use crate::camera_rays::Ray;
+use crate::grid::{Grid, nearest_crossing};
+use crate::grid_build::CellLists;
+use crate::polynomial::Polynomial;
+use crate::real::{NO_HIT, Real};
+use kernels::layout::NONE;
+
+/// Points tested before any is solved: the test uses the nearest hit of before the batch.
+const BATCH: usize = 32;
+
+/// Follows one ray until it ends.
+pub fn grid_trace<R: Real>(
+    ray: &mut Ray<R>,
+    grid: &Grid<R>,
+    lists: &CellLists,
+    polynomials: &[Polynomial<R>],
+) {
+    let (o, d) = (ray.origin, ray.direction);
+    while ray.cell != NONE {
+        let [first, end] = lists.cells[ray.cell as usize].map(|at| at as usize);
+        for batch in lists.slots[first..end].chunks(BATCH) {
+            ray.tests += batch.len() as u32;
+            let nearest = ray.hit_t;
+            for &slot in batch {
+                let p = &polynomials[slot as usize];
+                if p.near_trust_ball(o, d, nearest) {
+                    let t = p.intersect(o, d);
+                    let first_of_equals = || {
+                        polynomials
+                            .get(ray.hit_slot as usize)
+                            .is_some_and(|hit| (p.object, p.index) < (hit.object, hit.index))
+                    };
+                    if t < ray.hit_t || (t == ray.hit_t && t < R::of(NO_HIT) && first_of_equals()) {
+                        ray.hit_t = t;
+                        ray.hit_slot = slot;
+                    }
+                }
+            }
+        }
+        let at = grid.cell_of_id(ray.cell);
+        let exits = grid.crossings(at, o, d);
+        let ends = ray.hit_t <= nearest_crossing(exits);
+        ray.cell = if ends { NONE } else { grid.step(at, exits, d) };
+        ray.cells += u32::from(ray.cell != NONE);
+    }
+}

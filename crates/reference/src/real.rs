@@ -1,0 +1,231 @@
+//! Arithmetic of the twins: one source over f32, which must give lavapipe's bits, and f64, which
+//! says how far both are from the truth. Twin of `glsl/shared/math.glsl`.
+
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// f32 or f64, with the operations that kernels use.
+pub trait Real:
+    Copy
+    + PartialOrd
+    + PartialEq
+    + Debug
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// A constant, rounded to this precision.
+    fn of(value: f64) -> Self;
+    /// A value of a host struct.
+    fn of_f32(value: f32) -> Self;
+    /// Rounded to f32.
+    fn to_f32(self) -> f32;
+    /// A count.
+    fn of_u32(value: u32) -> Self;
+    /// A value that is clamped to the range of u32 before.
+    fn to_u32(self) -> u32;
+    /// Square root, correctly rounded.
+    fn sqrt(self) -> Self;
+    /// Largest integer not above.
+    fn floor(self) -> Self;
+    /// e^x for x ≤ 0, and 0 below −80.
+    fn exp_negative(self) -> Self;
+
+    /// As GLSL defines it.
+    #[must_use]
+    fn min(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+    /// As GLSL defines it.
+    #[must_use]
+    fn max(self, other: Self) -> Self {
+        if self < other { other } else { self }
+    }
+    /// Absolute value.
+    #[must_use]
+    fn abs(self) -> Self {
+        if self < Self::of(0.0) { -self } else { self }
+    }
+}
+
+impl Real for f32 {
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+    fn of_f32(value: f32) -> Self {
+        value
+    }
+    fn to_f32(self) -> f32 {
+        self
+    }
+    fn of_u32(value: u32) -> Self {
+        value as Self
+    }
+    fn to_u32(self) -> u32 {
+        self as u32
+    }
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    fn floor(self) -> Self {
+        self.floor()
+    }
+    fn exp_negative(self) -> Self {
+        let clamped = Real::max(self, -80.0);
+        let n = (clamped * 1.442_695_04 + 0.5).floor();
+        let r = (clamped - n * 0.693_359_375) + n * 2.121_944_4e-4;
+        let mut p = 1.987_569_15e-4;
+        p = p * r + 1.398_199_950_7e-3;
+        p = p * r + 8.333_451_907_3e-3;
+        p = p * r + 4.166_579_589_4e-2;
+        p = p * r + 1.666_666_545_9e-1;
+        p = p * r + 5.000_000_120_1e-1;
+        let e = (p * (r * r) + r) + 1.0;
+        let scale = Self::from_bits(((n as i32 + 127) as u32) << 23);
+        if self < -80.0 { 0.0 } else { e * scale }
+    }
+}
+
+impl Real for f64 {
+    fn of(value: f64) -> Self {
+        value
+    }
+    fn of_f32(value: f32) -> Self {
+        Self::from(value)
+    }
+    fn to_f32(self) -> f32 {
+        self as f32
+    }
+    fn of_u32(value: u32) -> Self {
+        Self::from(value)
+    }
+    fn to_u32(self) -> u32 {
+        self as u32
+    }
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    fn floor(self) -> Self {
+        self.floor()
+    }
+    fn exp_negative(self) -> Self {
+        if self < -80.0 { 0.0 } else { self.exp() }
+    }
+}
+
+/// Farther than any hit; finite, so that no infinity enters a sum.
+pub const NO_HIT: f64 = 3.0e38;
+
+/// Three numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct V3<R>(pub [R; 3]);
+
+impl<R: Real> V3<R> {
+    /// The same number three times.
+    pub fn splat(value: R) -> Self {
+        Self([value; 3])
+    }
+    /// A vector of a host struct.
+    pub fn of_f32(v: [f32; 3]) -> Self {
+        Self(v.map(R::of_f32))
+    }
+    /// Rounded to f32.
+    pub fn to_f32(self) -> [f32; 3] {
+        self.0.map(R::to_f32)
+    }
+    /// x
+    pub fn x(self) -> R {
+        self.0[0]
+    }
+    /// y
+    pub fn y(self) -> R {
+        self.0[1]
+    }
+    /// z
+    pub fn z(self) -> R {
+        self.0[2]
+    }
+    /// Number by number.
+    #[must_use]
+    pub fn zip(self, other: Self, f: impl Fn(R, R) -> R) -> Self {
+        Self([0, 1, 2].map(|i| f(self.0[i], other.0[i])))
+    }
+    /// Each number times a scalar.
+    #[must_use]
+    pub fn times(self, s: R) -> Self {
+        Self(self.0.map(|x| x * s))
+    }
+    /// Each number divided by a scalar.
+    #[must_use]
+    pub fn over(self, s: R) -> Self {
+        Self(self.0.map(|x| x / s))
+    }
+    /// (x·x + y·y) + z·z, in this order.
+    pub fn dot(self, b: Self) -> R {
+        self.x() * b.x() + self.y() * b.y() + self.z() * b.z()
+    }
+    /// Vector product.
+    #[must_use]
+    pub fn cross(self, b: Self) -> Self {
+        let a = self;
+        Self([
+            a.y() * b.z() - a.z() * b.y(),
+            a.z() * b.x() - a.x() * b.z(),
+            a.x() * b.y() - a.y() * b.x(),
+        ])
+    }
+    /// The vector over its length.
+    #[must_use]
+    pub fn normalize(self) -> Self {
+        self.over(self.dot(self).sqrt())
+    }
+}
+
+impl<R: Real> Add for V3<R> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+}
+
+impl<R: Real> Sub for V3<R> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+}
+
+impl<R: Real> Mul for V3<R> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+}
+
+impl<R: Real> Neg for V3<R> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(self.0.map(|x| -x))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two units in the last place, against f64's exponential.
+    #[test]
+    fn exp_negative_is_within_two_ulp() {
+        for i in 0..=800_000 {
+            let x = -(i as f32) * 1e-4;
+            let (ours, exact) = (f64::from(Real::exp_negative(x)), f64::from(x).exp());
+            assert!((ours / exact - 1.0).abs() < 2.0 * f64::from(f32::EPSILON), "x = {x}: {ours}");
+        }
+        assert_eq!(Real::exp_negative(0.0f32), 1.0);
+        assert_eq!(Real::exp_negative(-81.0f32), 0.0);
+    }
+}

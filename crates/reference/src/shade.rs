@@ -1,0 +1,83 @@
+//! Twin of `shade`: Lambert's law at the hit, the background where there is none.
+
+use crate::camera_rays::Ray;
+use crate::polynomial::Polynomial;
+use crate::real::{Real, V3};
+use kernels::layout::{FilmPixel, LIGHT_POINT, Light, NONE, ObjectInfo, ShadeParams};
+
+const INVERSE_PI: f64 = 0.318_309_886;
+
+/// What shading reads besides the ray.
+#[derive(Debug, Clone, Copy)]
+pub struct Shading<'a> {
+    /// Camera axis, background, light count.
+    pub params: &'a ShadeParams,
+    /// One an object.
+    pub objects: &'a [ObjectInfo],
+    /// Three floats a point.
+    pub colors: &'a [f32],
+    /// All lights.
+    pub lights: &'a [Light],
+}
+
+fn point_color<R: Real>(shading: &Shading<'_>, object: &ObjectInfo, slot: u32) -> V3<R> {
+    if object.first_color == NONE {
+        return V3::of_f32(object.albedo);
+    }
+    let at = (object.first_color + 3 * (slot - object.first_slot)) as usize;
+    V3([0, 1, 2].map(|channel| R::of_f32(shading.colors[at + channel])))
+}
+
+/// What one light sends to a surface at x, by Lambert's law.
+fn irradiance<R: Real>(light: &Light, x: V3<R>, normal: V3<R>) -> V3<R> {
+    let zero = R::of(0.0);
+    let (vector, strength) = (V3::of_f32(light.vector), V3::of_f32(light.strength));
+    if light.kind != LIGHT_POINT {
+        return strength.times(normal.dot(vector).max(zero));
+    }
+    let towards = vector - x;
+    let square = towards.dot(towards);
+    if square <= zero {
+        return V3::splat(zero);
+    }
+    let l = towards.over(square.sqrt());
+    strength.over(square).times(normal.dot(l).max(zero))
+}
+
+/// What one pixel shows.
+#[must_use]
+pub fn shade<R: Real>(
+    ray: &Ray<R>,
+    polynomials: &[Polynomial<R>],
+    shading: &Shading<'_>,
+) -> FilmPixel {
+    let params = shading.params;
+    let counts = [ray.tests, ray.cells, ray.hit_slot, 0];
+    let Some(p) = polynomials.get(ray.hit_slot as usize) else {
+        let [r, g, b] = if params.transparent != 0 { [0.0; 3] } else { params.background };
+        return FilmPixel {
+            color: [r, g, b, 0.0],
+            position_depth: [0.0, 0.0, 0.0, f32::INFINITY],
+            normal_object: [0.0, 0.0, 0.0, -1.0],
+            counts,
+        };
+    };
+    let (y, normal) = p.surface_at(ray.origin, ray.direction, ray.hit_t);
+    let x = p.center + y;
+    let light = shading
+        .lights
+        .iter()
+        .take(params.light_count as usize)
+        .fold(V3::splat(R::of(0.0)), |sum, light| sum + irradiance(light, x, normal));
+    let color = point_color(shading, &shading.objects[p.object as usize], ray.hit_slot);
+    let [r, g, b] = (color * light.times(R::of(INVERSE_PI))).to_f32();
+    let [px, py, pz] = x.to_f32();
+    let [nx, ny, nz] = normal.to_f32();
+    let depth = ray.hit_t * ray.direction.dot(V3::of_f32(params.forward));
+    FilmPixel {
+        color: [r, g, b, 1.0],
+        position_depth: [px, py, pz, depth.to_f32()],
+        normal_object: [nx, ny, nz, p.object as f32],
+        counts,
+    }
+}

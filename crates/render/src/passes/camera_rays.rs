@@ -1,0 +1,39 @@
+//! The pass `camera_rays`.
+
+use super::{bind_state, over_pixels, state_bindings};
+use crate::state::StateImages;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use kernels::layout::{CameraParams, STATE_OUT, TRACE_INFO};
+use kernels::spirv;
+use std::sync::Arc;
+
+/// The ray through each pixel's centre, in the first cell that it meets.
+pub(crate) struct CameraRays {
+    kernel: Kernel,
+}
+
+impl CameraRays {
+    pub const NAME: &'static str = "camera_rays";
+
+    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+        let mut bindings = state_bindings(STATE_OUT).to_vec();
+        bindings.push((TRACE_INFO, Binding::StorageBuffer));
+        let params = size_of::<CameraParams>();
+        let kernel = Kernel::new(device, Self::NAME, &spirv::camera_rays(), &bindings, params)?;
+        Ok(Self { kernel })
+    }
+
+    /// Records the start of every ray of a tile.
+    pub fn record(
+        &self,
+        rec: &mut Recorder,
+        grid_info: &Buffer,
+        out: &StateImages,
+        params: &CameraParams,
+    ) {
+        bind_state(rec.pass(Self::NAME, &self.kernel), STATE_OUT, out)
+            .buffer(TRACE_INFO, grid_info)
+            .push(params)
+            .dispatch(over_pixels(params.tile_size));
+    }
+}

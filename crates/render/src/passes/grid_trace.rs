@@ -1,0 +1,53 @@
+//! The pass `grid_trace`.
+
+use super::{bind_state, over_pixels, state_bindings};
+use crate::state::RayState;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use kernels::layout::{
+    STATE_IN, STATE_OUT, TRACE_CELLS, TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS, TRACE_SLOTS,
+    TraceParams,
+};
+use kernels::spirv;
+use points::device::Surfaces;
+use std::sync::Arc;
+
+/// What the pass works on.
+pub(crate) struct GridTraceIo<'a> {
+    pub surfaces: &'a Surfaces,
+    pub state: &'a RayState,
+    /// One u32, zero before: how many rays have not ended.
+    pub live: &'a Buffer,
+}
+
+/// Lets each live ray cross up to K cells of the grid (\[T\] §5).
+pub(crate) struct GridTrace {
+    kernel: Kernel,
+}
+
+impl GridTrace {
+    pub const NAME: &'static str = "grid_trace";
+
+    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+        let mut bindings = state_bindings(STATE_IN).to_vec();
+        bindings.extend(state_bindings(STATE_OUT));
+        let buffers = [TRACE_INFO, TRACE_CELLS, TRACE_SLOTS, TRACE_POLYNOMIALS, TRACE_LIVE];
+        bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        let params = size_of::<TraceParams>();
+        let kernel = Kernel::new(device, Self::NAME, &spirv::grid_trace(), &bindings, params)?;
+        Ok(Self { kernel })
+    }
+
+    /// Records one pass; the caller then swaps the ray state.
+    pub fn record(&self, rec: &mut Recorder, io: GridTraceIo<'_>, params: &TraceParams) {
+        let pass = rec.pass(Self::NAME, &self.kernel);
+        let pass = bind_state(pass, STATE_IN, &io.state.current);
+        bind_state(pass, STATE_OUT, &io.state.next)
+            .buffer(TRACE_INFO, &io.surfaces.grid_info)
+            .buffer(TRACE_CELLS, &io.surfaces.cells)
+            .buffer(TRACE_SLOTS, &io.surfaces.slots)
+            .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
+            .buffer(TRACE_LIVE, io.live)
+            .push(params)
+            .dispatch(over_pixels(params.tile_size));
+    }
+}

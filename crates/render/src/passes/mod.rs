@@ -1,0 +1,30 @@
+//! The passes of a frame. Each owns its pipeline, borrows what it works on, and offers `record`.
+
+mod camera_rays;
+mod grid_trace;
+mod shade;
+
+pub(crate) use camera_rays::CameraRays;
+pub(crate) use grid_trace::{GridTrace, GridTraceIo};
+pub(crate) use shade::{Shade, ShadeIo};
+
+use crate::state::StateImages;
+use gpu::{Binding, PassBuilder};
+use kernels::layout::TILE_GROUP;
+
+/// Pixels that a workgroup covers along each side (`tile_pixel` in `glsl/shared/index.glsl`).
+const TILE_EDGE: u32 = 8;
+
+/// The four bindings of a ray state that begin at `first`.
+fn state_bindings(first: u32) -> [(u32, Binding); 4] {
+    [0, 1, 2, 3].map(|i| (first + i, Binding::StorageImage))
+}
+
+fn bind_state<'a>(pass: PassBuilder<'a>, first: u32, images: &StateImages) -> PassBuilder<'a> {
+    (first..).zip(images).fold(pass, |pass, (binding, image)| pass.image(binding, image))
+}
+
+/// Invocations for a tile of pixels: a row of [`TILE_GROUP`] for each 8 × 8 of them.
+fn over_pixels(size: [u32; 2]) -> [u32; 3] {
+    [size[0].div_ceil(TILE_EDGE) * TILE_GROUP, size[1].div_ceil(TILE_EDGE), 1]
+}

@@ -1,0 +1,50 @@
+//! The pass `shade`.
+
+use super::{bind_state, over_pixels, state_bindings};
+use crate::state::StateImages;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use kernels::layout::{
+    SHADE_COLORS, SHADE_FILM, SHADE_LIGHTS, SHADE_OBJECTS, STATE_IN, ShadeParams, TRACE_POLYNOMIALS,
+};
+use kernels::spirv;
+use std::sync::Arc;
+
+/// What the pass works on.
+pub(crate) struct ShadeIo<'a> {
+    pub state: &'a StateImages,
+    pub polynomials: &'a Buffer,
+    pub objects: &'a Buffer,
+    pub colors: &'a Buffer,
+    pub lights: &'a Buffer,
+    pub film: &'a Buffer,
+}
+
+/// Lambert's law at the hit of each ray, the background where there is none (method, section 4).
+pub(crate) struct Shade {
+    kernel: Kernel,
+}
+
+impl Shade {
+    pub const NAME: &'static str = "shade";
+
+    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+        let mut bindings = state_bindings(STATE_IN).to_vec();
+        let buffers = [TRACE_POLYNOMIALS, SHADE_OBJECTS, SHADE_COLORS, SHADE_LIGHTS, SHADE_FILM];
+        bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        let params = size_of::<ShadeParams>();
+        let kernel = Kernel::new(device, Self::NAME, &spirv::shade(), &bindings, params)?;
+        Ok(Self { kernel })
+    }
+
+    /// Records the shading of a tile whose rays have all ended.
+    pub fn record(&self, rec: &mut Recorder, io: ShadeIo<'_>, params: &ShadeParams) {
+        bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, io.state)
+            .buffer(TRACE_POLYNOMIALS, io.polynomials)
+            .buffer(SHADE_OBJECTS, io.objects)
+            .buffer(SHADE_COLORS, io.colors)
+            .buffer(SHADE_LIGHTS, io.lights)
+            .buffer(SHADE_FILM, io.film)
+            .push(params)
+            .dispatch(over_pixels(params.tile_size));
+    }
+}

@@ -1,0 +1,177 @@
+//! The f32 twin gives lavapipe's bits: polynomials, grid, picture.
+#![allow(clippy::expect_used, reason = "a test fails by panicking")]
+
+use harness::{
+    Bench, Rendered, assert_same_bits, assert_same_film, fibonacci_sphere, grid_points, plan_of,
+    random, render_twin, set_of, wavy_sheet,
+};
+use points::PointSet;
+
+const LIGHTS: &str = "
+[[lights]]
+kind = \"directional\"
+direction = [-0.4, -1.0, -0.3]
+irradiance = [3.0, 2.9, 2.7]
+[[lights]]
+kind = \"point\"
+position = [2.0, 1.0, 3.0]
+intensity = [4.0, 5.0, 6.0]
+[background]
+color = [0.1, 0.2, 0.3]
+";
+
+fn check(name: &str, settings: &str, positions: Vec<[f64; 3]>) -> Rendered {
+    let plan = plan_of(&format!("{settings}\n{LIGHTS}"), &[set_of(positions)]);
+    let on_device = Bench::open().render(&plan);
+    assert_same_bits(name, &on_device, &render_twin(&plan));
+    on_device
+}
+
+const SMALL: &str = "[image]\nsize = [160, 120]";
+
+#[test]
+fn sphere_is_the_same_to_the_bit() {
+    for polynomial in ["full", "incomplete"] {
+        let settings = format!(
+            "[image]\nsize = [320, 240]\n[[objects]]\npoints = \"s.ply\"\n\
+             surface = {{ polynomial = \"{polynomial}\" }}"
+        );
+        let sphere = check(polynomial, &settings, fibonacci_sphere(10_000));
+        assert!(sphere.film.object.iter().filter(|&&object| object >= 0.0).count() > 10_000);
+    }
+}
+
+#[test]
+fn ties_and_random_spacing_are_the_same_to_the_bit() {
+    check("grid", SMALL, grid_points(100));
+    check("sheet", SMALL, wavy_sheet(5_000));
+    for k in [3, 5, 64] {
+        let settings = format!(
+            "{SMALL}\n[[objects]]\npoints = \"s.ply\"\nsurface = {{ neighbors = {k}, trust = 1.0 }}"
+        );
+        check("neighbors", &settings, wavy_sheet(2_000));
+    }
+}
+
+#[test]
+fn constant_feature_size_is_the_same_to_the_bit() {
+    for h in ["0.05", "0.001", "5.0"] {
+        let settings =
+            format!("{SMALL}\n[[objects]]\npoints = \"s.ply\"\nsurface = {{ feature_size = {h} }}");
+        check(h, &settings, wavy_sheet(2_000));
+    }
+}
+
+/// One point, two, a line, a plane, all points equal, a far outlier: whatever comes out, it is the
+/// same, it is finite, and what has no surface shows the background.
+#[test]
+fn degenerate_sets_are_the_same_to_the_bit() {
+    let mut seed = 3;
+    let mut outlier = fibonacci_sphere(2_000);
+    outlier.push([1e5, -3e4, 7e4]);
+    let along = |i: u32| f64::from(i) * 0.01;
+    let cases: Vec<(&str, Vec<[f64; 3]>, bool)> = vec![
+        ("one point", vec![[1.0, 2.0, 3.0]], false),
+        ("two points", vec![[0.0; 3], [1.0, 0.5, 0.25]], false),
+        ("three points", vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], true),
+        ("an axis", (0..200).map(|i| [along(i), 0.0, 0.0]).collect(), false),
+        (
+            "a slanted line",
+            (0..200).map(|i| [along(i), 2.0 * along(i), -0.3 * along(i)]).collect(),
+            false,
+        ),
+        (
+            "a plane",
+            (0..400).map(|i| [along(i % 20), along(i / 20), 0.5 * along(i % 20)]).collect(),
+            true,
+        ),
+        ("all equal", vec![[0.1, 0.2, 0.3]; 500], false),
+        ("a cloud", (0..500).map(|_| [0; 3].map(|_| random(&mut seed))).collect(), true),
+        (
+            "pairs of duplicates",
+            fibonacci_sphere(1_000).into_iter().flat_map(|p| [p, p]).collect(),
+            true,
+        ),
+        ("a far outlier", outlier, true),
+    ];
+    for (name, positions, has_surface) in cases {
+        let rendered = check(name, SMALL, positions);
+        let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
+        assert!(finite(rendered.film.color.as_flattened()), "{name}: colours");
+        assert!(finite(rendered.film.normal.as_flattened()), "{name}: normals");
+        let fitted = rendered.polynomials.iter().any(|p| p.center_trust[3] > 0.0);
+        assert_eq!(fitted, has_surface, "{name}: carries a surface");
+        assert!(has_surface || rendered.film.object.iter().all(|&object| object == -1.0));
+    }
+}
+
+#[test]
+fn several_objects_with_colors_and_transforms_are_the_same_to_the_bit() {
+    let scene = format!(
+        "{SMALL}\n{LIGHTS}
+[[objects]]
+points = \"a.ply\"
+transform = {{ scale = 0.5, rotate = [10.0, 20.0, 30.0], translate = [0.2, 0.0, 0.0] }}
+[[objects]]
+points = \"b.ply\"
+material = {{ albedo = [0.2, 0.9, 0.4] }}
+surface = {{ polynomial = \"incomplete\", neighbors = 12 }}
+[[objects]]
+points = \"c.ply\"
+"
+    );
+    let positions = fibonacci_sphere(3_000);
+    let colors = positions.iter().map(|p| p.map(|x| 0.5 + 0.5 * x as f32)).collect();
+    let coloured = PointSet { colors: Some(colors), ..set_of(positions) };
+    let sets = [coloured, set_of(wavy_sheet(3_000)), set_of(fibonacci_sphere(2))];
+    let plan = plan_of(&scene, &sets);
+    let on_device = Bench::open().render(&plan);
+    assert_same_bits("objects", &on_device, &render_twin(&plan));
+    for object in [0.0, 1.0] {
+        assert!(on_device.film.object.contains(&object), "object {object} is seen");
+    }
+}
+
+/// K = 1 is the paper's loop; any K, and any grid, gives the same picture.
+#[test]
+fn every_k_gives_the_same_bytes() {
+    let bench = Bench::open();
+    let mut plan = plan_of(&format!("{SMALL}\n{LIGHTS}"), &[set_of(fibonacci_sphere(10_000))]);
+    let whole = bench.render(&plan);
+    let mut passes = vec![whole.passes];
+    for k in [1, 4, 1_000_000] {
+        plan.cells_per_pass = k;
+        let rendered = bench.render(&plan);
+        assert_same_bits("K", &whole, &rendered);
+        passes.push(rendered.passes);
+    }
+    assert!(passes[1] > 4 * passes[0] && passes[2] > passes[0], "passes: {passes:?}");
+    plan.cells_per_pass = 0;
+    for resolution in [1, 5, 200] {
+        plan.grid_resolution = resolution;
+        assert_same_film("grid resolution", &whole.film, &bench.render(&plan).film);
+    }
+}
+
+/// One cell with every point: a ray tests them all, far more than lavapipe's loops bear in one
+/// dispatch, and still none is cut short.
+#[test]
+fn a_cell_with_too_many_points_for_one_pass_is_finished_in_the_next() {
+    let mut plan = plan_of(
+        "[image]\nsize = [24, 16]\n[render]\ngrid_resolution = 1",
+        &[set_of(fibonacci_sphere(150_000))],
+    );
+    let one_cell = Bench::open().render(&plan);
+    assert!(one_cell.passes > 10, "passes: {}", one_cell.passes);
+    assert!(one_cell.tests >= 150_000 * 24, "tests: {}", one_cell.tests);
+    plan.grid_resolution = 0;
+    assert_same_film("one cell", &one_cell.film, &render_twin(&plan).film);
+}
+
+/// Two runs, two renderers: the same bytes.
+#[test]
+fn a_second_run_gives_the_same_bytes() {
+    let plan = plan_of(&format!("{SMALL}\n{LIGHTS}"), &[set_of(wavy_sheet(4_000))]);
+    let bench = Bench::open();
+    assert_same_bits("second run", &bench.render(&plan), &bench.render(&plan));
+}
