@@ -1,0 +1,91 @@
+//! Rolling land with a ring of hills around it, y up.
+//!
+//! The points lie on a golden-angle spiral in the ground plane: evenly within `NEAR`, and with a
+//! density that falls with the cube of the distance beyond. Seen from somewhere above the middle, the
+//! ground that one pixel covers grows in the same way, so each pixel gets about as many points.
+
+use crate::color::{mix, oklch};
+use crate::sphere::{GOLDEN_TURN, turn};
+use crate::vector::Vector;
+
+/// Where the density begins to fall, and where the land ends.
+const NEAR: f64 = 5.0;
+const FAR: f64 = 34.0;
+
+/// Waves of the ground: wave vector, amplitude, phase.
+type Wave = ([f64; 2], f64, f64);
+const SWELL: [Wave; 4] = [
+    ([0.9, 0.5], 0.11, 0.3),
+    ([-0.6, 1.3], 0.09, 1.7),
+    ([1.9, -0.5], 0.05, 4.1),
+    ([0.6, 2.5], 0.035, 2.6),
+];
+const HILLS: [Wave; 4] = [
+    ([0.17, 0.06], 1.0, 0.9),
+    ([-0.08, 0.21], 0.8, 2.2),
+    ([0.31, -0.12], 0.55, 5.0),
+    ([0.22, 0.37], 0.35, 0.4),
+];
+
+fn waves(waves: &[Wave], x: f64, z: f64) -> f64 {
+    waves.iter().map(|&(k, amplitude, phase)| amplitude * (k[0] * x + k[1] * z + phase).sin()).sum()
+}
+
+/// 0 up to `from`, 1 beyond `to`, without a kink.
+fn smooth_step(from: f64, to: f64, value: f64) -> f64 {
+    let t = ((value - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Height of the ground.
+pub fn height(x: f64, z: f64) -> f64 {
+    let distance = x.hypot(z);
+    let swell = waves(&SWELL, x, z);
+    let ring = smooth_step(5.0, 22.0, distance) * (1.0 - 0.7 * smooth_step(24.0, FAR, distance));
+    swell + ring * (1.9 + waves(&HILLS, x, z))
+}
+
+/// Colour of the ground, linear: by height, and bluer with the distance.
+fn color(y: f64, distance: f64) -> [f64; 3] {
+    let low = oklch(0.46, 0.085, 0.50);
+    let middle = oklch(0.66, 0.105, 0.35);
+    let high = oklch(0.85, 0.080, 0.24);
+    let band = (y + 0.22) / 0.44;
+    let near =
+        if band < 0.5 { mix(low, middle, 2.0 * band) } else { mix(middle, high, 2.0 * band - 1.0) };
+    mix(near, oklch(0.62, 0.075, 0.71), 0.92 * smooth_step(4.0, 20.0, distance))
+}
+
+/// `count` points of the land, with their colours.
+pub fn points(count: u32) -> Vec<(Vector, [f64; 3])> {
+    // Points within r, as a multiple of those within NEAR: (r / NEAR)² up to there, beyond it
+    // 1 + 2 (1 - NEAR / r), the integral of a density that falls as 1 / r³.
+    let all = 1.0 + 2.0 * (1.0 - NEAR / FAR);
+    (0..count)
+        .map(|i| {
+            let within = all * (f64::from(i) + 0.5) / f64::from(count);
+            let distance = if within <= 1.0 {
+                NEAR * within.sqrt()
+            } else {
+                NEAR / (1.0 - 0.5 * (within - 1.0))
+            };
+            let (sin, cos) = turn(f64::from(i) * GOLDEN_TURN).sin_cos();
+            let [x, z] = [distance * cos, distance * sin];
+            let y = height(x, z);
+            ([x, y, z], color(y, distance))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_lie_on_the_ground_within_its_radius() {
+        for ([x, y, z], _) in points(1000) {
+            assert!(x.hypot(z) <= FAR, "({x}, {z})");
+            assert!((y - height(x, z)).abs() < 1e-12, "({x}, {z})");
+        }
+    }
+}
