@@ -4,28 +4,59 @@ use glam::{DMat4, DVec3, DVec4};
 use kernels::layout::CameraParams;
 use scene::{Camera, Up};
 
-/// Direction from the middle of the points to the eye, for +y up.
+/// Direction from the points to the eye, for +y up.
 const FRAMING_DIRECTION: DVec3 = DVec3::new(0.45, 0.35, 1.0);
-/// Distance to the eye over half the diagonal of the bounding box.
-const FRAMING_DISTANCE: f64 = 2.2;
 const FRAMING_FOV: f64 = 40.0;
+/// Share of the picture that the points fill, along the direction that is fuller.
+const FRAMING_FILL: f64 = 0.88;
 
-/// A camera that sees the whole box.
-pub(crate) fn frame(bounds: [[f64; 3]; 2], up: Up) -> Camera {
-    let [low, high] = bounds.map(DVec3::from);
-    let center = 0.5 * low + 0.5 * high;
-    let half_diagonal = match (0.5 * (high - low)).length() {
-        0.0 => 1.0, // one point: any distance shows the same nothing
-        length => length,
-    };
+/// The nearest camera, of one direction and angle, that has every point well inside the picture.
+///
+/// A point (x, y, z) along right, up and forward stays below the frustum's upper side for an eye at
+/// height c and distance D before the origin where y − c ≤ t (z + D), and likewise on the other
+/// sides; so the extremes of ±x − t z and ±y − t z give eye and distance in closed form.
+pub(crate) fn frame<'a>(
+    points: impl Iterator<Item = &'a [f64; 3]>,
+    bounds: [[f64; 3]; 2],
+    image_size: [u32; 2],
+    up: Up,
+) -> Camera {
+    let center = 0.5 * DVec3::from(bounds[0]) + 0.5 * DVec3::from(bounds[1]);
     let (direction, up) = match up {
         Up::Y => (FRAMING_DIRECTION, DVec3::Y),
         Up::Z => {
-            (DVec3::new(FRAMING_DIRECTION.x, -FRAMING_DIRECTION.z, FRAMING_DIRECTION.y), DVec3::Z)
+            let DVec3 { x, y, z } = FRAMING_DIRECTION;
+            (DVec3::new(x, -z, y), DVec3::Z)
         }
     };
-    let eye = center + FRAMING_DISTANCE * half_diagonal * direction.normalize();
-    Camera { eye: eye.into(), target: center.into(), up: up.into(), vertical_fov: FRAMING_FOV }
+    let forward = -direction.normalize();
+    let right = forward.cross(up).normalize();
+    let above = right.cross(forward);
+    let half_tangent = FRAMING_FILL * (0.5 * FRAMING_FOV.to_radians()).tan();
+    let aspect = f64::from(image_size[0]) / f64::from(image_size[1]);
+    let tangents = [half_tangent * aspect, half_tangent];
+    let mut extremes = [[f64::NEG_INFINITY; 2]; 2]; // of +x, −x; of +y, −y
+    for &point in points {
+        let p = DVec3::from(point) - center;
+        let depth = p.dot(forward);
+        for (axis, at) in [p.dot(right), p.dot(above)].into_iter().enumerate() {
+            for (side, at) in [at, -at].into_iter().enumerate() {
+                let reach = at - tangents[axis] * depth;
+                extremes[axis][side] = extremes[axis][side].max(reach);
+            }
+        }
+    }
+    let distance = (0..2)
+        .map(|axis| (extremes[axis][0] + extremes[axis][1]) / (2.0 * tangents[axis]))
+        .fold(0.0, f64::max);
+    let shift = [0, 1].map(|axis| 0.5 * (extremes[axis][0] - extremes[axis][1]));
+    // One point, or several in one place: any distance shows the same nothing.
+    let half_diagonal = (0.5 * (DVec3::from(bounds[1]) - DVec3::from(bounds[0]))).length();
+    let distance = distance.max(1.05 * half_diagonal); // points along one line of sight
+    let distance = if distance > 0.0 { distance } else { 1.0 };
+    let target = center + shift[0] * right + shift[1] * above;
+    let eye = target - distance * forward;
+    Camera { eye: eye.into(), target: target.into(), up: up.into(), vertical_fov: FRAMING_FOV }
 }
 
 /// A camera in the forms that kernels and files take.
@@ -131,15 +162,40 @@ mod tests {
         assert!(close(ndc([0.0, 2.0, 1.0]), [0.5, 0.5, 0.75]), "{:?}", ndc([0.0, 2.0, 1.0]));
     }
 
+    /// Every point is inside the picture, and along one axis both sides are reached.
     #[test]
-    fn framing_sees_the_box_from_its_front_and_above() {
-        for (up, axis) in [(Up::Y, 1), (Up::Z, 2)] {
-            let camera = frame([[-1.0; 3], [1.0; 3]], up);
-            assert_eq!(camera.up[axis], 1.0);
-            assert!(camera.eye[axis] > 0.0 && camera.eye[0] > 0.0);
-            let distance = DVec3::from(camera.eye).length();
-            assert!((distance - 2.2 * 3f64.sqrt()).abs() < 1e-12);
+    fn framing_holds_every_point_and_wastes_no_room() {
+        let (low, high) = ([-3.0, 10.0, 0.5], [1.0, 11.0, 2.0]);
+        let corners: Vec<[f64; 3]> = (0..8)
+            .map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { low[axis] } else { high[axis] }))
+            .collect();
+        for (up, size) in [(Up::Y, [640, 480]), (Up::Z, [640, 480]), (Up::Y, [100, 400])] {
+            let camera = frame(corners.iter(), [low, high], size, up);
+            let view = View::new(&camera, size, [0.0; 3]);
+            let inside: Vec<[f32; 2]> = corners
+                .iter()
+                .map(|corner| {
+                    let [x, y, _, w] = apply(corner.map(|x| x as f32), view.world_to_ndc);
+                    [x / w, y / w]
+                })
+                .collect();
+            let margin = 0.5 - 0.5 * FRAMING_FILL as f32;
+            let tight = |axis: usize| {
+                let all = || inside.iter().map(|p| p[axis]);
+                let (low, high) = (all().fold(1.0, f32::min), all().fold(0.0, f32::max));
+                assert!(low > margin - 1e-4 && high < 1.0 - margin + 1e-4, "{inside:?}");
+                low < margin + 1e-4 && high > 1.0 - margin - 1e-4
+            };
+            let [across, along] = [tight(0), tight(1)];
+            assert!(across || along, "{inside:?}");
         }
-        assert!(frame([[3.0; 3], [3.0; 3]], Up::Y).eye.iter().all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn a_single_point_has_a_finite_view() {
+        let point = [3.0; 3];
+        let camera = frame([point].iter(), [point, point], [64, 48], Up::Y);
+        assert!(camera.eye.iter().chain(&camera.target).all(|x| x.is_finite()));
+        assert_ne!(camera.eye, camera.target);
     }
 }

@@ -144,7 +144,9 @@ impl Plan {
             .map(|(object, index)| fit_params(object, index, &cloud))
             .collect();
         let (objects, colors) = object_infos(scene, sets, &cloud)?;
-        let camera = scene.camera.unwrap_or_else(|| camera::frame(cloud.bounds, up));
+        let camera = scene
+            .camera
+            .unwrap_or_else(|| camera::frame(world.iter().flatten(), cloud.bounds, image_size, up));
         let view = View::new(&camera, image_size, cloud.origin);
         let lights = scene.lights.iter().map(|light| local_light(light, cloud.origin)).collect();
         let framed = Scene { camera: Some(camera), ..scene.clone() };
