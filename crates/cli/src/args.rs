@@ -1,0 +1,214 @@
+//! What may be typed. Values are checked for their form here, for their range by the scene.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// The whole command line.
+#[derive(Debug, Parser)]
+#[command(name = "pointillist", version, about, max_term_width = 100)]
+#[command(after_help = "Exit codes: 0 done, 1 compare found a difference over a limit, 2 usage, \
+    scene or input at fault, 3 no usable Vulkan device, 4 the device or the machine ran out, \
+    130 interrupted.")]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene file, or a point file as it is
+    Render(RenderArgs),
+    /// Measure how long scenes take to render
+    Bench(BenchArgs),
+    /// Say what is in a point file or a scene file
+    Info(InfoArgs),
+    /// Validate a scene without rendering it
+    Check(CheckArgs),
+    /// Print the JSON Schema of scene files
+    Schema,
+    /// List the Vulkan devices, and say which is the default and why
+    Devices,
+    /// Compare two pictures (not built yet)
+    #[command(disable_help_flag = true)]
+    Compare {
+        /// Not read yet
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+        rest: Vec<std::ffi::OsString>,
+    },
+}
+
+#[derive(Debug, Args)]
+pub struct RenderArgs {
+    /// Scene file (.toml), or a point file; then camera, light and material are chosen
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// Picture to write: .exr, .png or .jpg; may be given several times
+    #[arg(short, long = "output", value_name = "OUT", required = true)]
+    pub outputs: Vec<PathBuf>,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    /// Rays a pixel
+    #[arg(long, value_name = "N")]
+    pub samples: Option<u32>,
+    /// Render only a part of the picture
+    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop)]
+    pub crop: Option<plan::Window>,
+    /// Which axis of a point file points upwards [default: y]
+    #[arg(long, value_name = "AXIS")]
+    pub up: Option<UpAxis>,
+    #[command(flatten)]
+    pub device: DeviceArgs,
+    /// Write times and counts of this render as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+    #[command(flatten)]
+    pub progress: ProgressArgs,
+}
+
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    /// Scene files or point files
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// Frames to time, after one to warm up
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub runs: u32,
+    /// Write the results as JSON
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// Write the results as a Markdown table
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    #[command(flatten)]
+    pub device: DeviceArgs,
+    #[command(flatten)]
+    pub progress: ProgressArgs,
+}
+
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// Point file or scene file
+    pub file: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub progress: ProgressArgs,
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Scene file, or a point file
+    pub scene: PathBuf,
+    /// Override one value of the scene, e.g. objects.0.surface.trust=0.7
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+    #[command(flatten)]
+    pub progress: ProgressArgs,
+}
+
+/// Options that stand for values of the scene.
+#[derive(Debug, Args)]
+pub struct Overrides {
+    /// Width and height of the picture in pixels
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub size: Option<Size>,
+    /// Override one value of the scene, e.g. objects.0.surface.trust=0.7; may be given several times
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+    /// Cells a ray may cross in one pass: 0 lets the device decide, 1 is the paper's loop
+    #[arg(long, value_name = "K")]
+    pub cells_per_pass: Option<u32>,
+}
+
+#[derive(Debug, Args)]
+pub struct DeviceArgs {
+    /// Device by a part of its name or by its index, see `pointillist devices`; `reference` renders
+    /// on the CPU without Vulkan, `reference-f64` so in double precision
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub device: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub struct ProgressArgs {
+    /// Say nothing on stderr but errors
+    #[arg(long)]
+    pub quiet: bool,
+    /// When to show progress on stderr; auto: on a terminal
+    #[arg(long, value_name = "WHEN", value_enum, default_value_t = ProgressWhen::Auto)]
+    pub progress: ProgressWhen,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ProgressWhen {
+    Auto,
+    Always,
+    Never,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum UpAxis {
+    Y,
+    Z,
+}
+
+impl From<UpAxis> for scene::Up {
+    fn from(axis: UpAxis) -> Self {
+        match axis {
+            UpAxis::Y => Self::Y,
+            UpAxis::Z => Self::Z,
+        }
+    }
+}
+
+/// Width and height.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Size(pub u32, pub u32);
+
+/// What was typed, or clap's answer to it.
+pub fn parse() -> Result<Arguments, clap::Error> {
+    Arguments::try_parse()
+}
+
+fn parse_size(text: &str) -> Result<Size, String> {
+    let numbers: Option<Vec<u32>> = text.split(['x', 'X']).map(|part| part.parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[width, height]) => Ok(Size(width, height)),
+        _ => Err("expected WxH, two whole numbers, e.g. 640x480".to_owned()),
+    }
+}
+
+fn parse_crop(text: &str) -> Result<plan::Window, String> {
+    let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, width, height]) => Ok(plan::Window { origin: [x, y], size: [width, height] }),
+        _ => Err("expected X,Y,W,H, four whole numbers, e.g. 100,50,320,240".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_and_crops_are_whole_numbers() {
+        assert_eq!(parse_size("640x480"), Ok(Size(640, 480)));
+        for wrong in ["640", "640x", "640x480x2", "-1x5", "1.5x2", "640 x 480", ""] {
+            assert!(parse_size(wrong).is_err(), "{wrong}");
+        }
+        let window = plan::Window { origin: [1, 2], size: [3, 4] };
+        assert_eq!(parse_crop("1,2,3,4"), Ok(window));
+        for wrong in ["1,2,3", "1,2,3,4,5", "a,2,3,4", ""] {
+            assert!(parse_crop(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! `check`: everything that `render` checks before it needs a device.
+
+use crate::args::CheckArgs;
+use crate::console;
+use crate::errors::Failure;
+use crate::input::{Input, SceneValues};
+use crate::progress::Progress;
+
+/// Loads the scene, reads its points and plans its render: what passes here does not fail there
+/// for the scene's sake.
+pub fn run(args: &CheckArgs) -> Result<(), Failure> {
+    let input = Input::load(&args.scene, &SceneValues::set(&args.set), None)?;
+    let progress = Progress::new(&args.progress);
+    let sets = input.read_points(&progress)?;
+    input.plan(&sets, None, &progress)?;
+    let objects = match sets.len() {
+        1 => "1 object".to_owned(),
+        count => format!("{count} objects"),
+    };
+    console::result(&format!("{}: ok, {objects}\n", input.path.display()))
+}

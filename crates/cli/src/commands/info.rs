@@ -1,0 +1,133 @@
+//! `info`: what is in a point file, or in a scene and the point files it names.
+
+use crate::args::InfoArgs;
+use crate::console;
+use crate::errors::Failure;
+use crate::input::{self, Input, SceneValues};
+use crate::progress::Progress;
+use plan::Plan;
+use points::neighbors::median_spacing;
+use points::{PointSet, PointSummary, Watch};
+use scene::{Light, Scene};
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::sync::Arc;
+
+/// Prints what is there.
+pub fn run(args: &InfoArgs) -> Result<(), Failure> {
+    let progress = Progress::new(&args.progress);
+    let text = if input::is_scene_file(&args.file) {
+        of_scene(args, &progress)?
+    } else {
+        let set = input::read_file(&args.file, &progress)?;
+        let summary = summarize(&set, &progress);
+        if args.json { pretty(&summary.to_json()) } else { format!("{summary}\n") }
+    };
+    drop(progress);
+    console::result(&text)
+}
+
+fn of_scene(args: &InfoArgs, progress: &Progress) -> Result<String, Failure> {
+    let input = Input::load(&args.file, &SceneValues::default(), None)?;
+    let sets = input.read_points(progress)?;
+    let plan = input.plan(&sets, None, progress)?;
+    let mut summaries: Vec<Arc<PointSummary>> = Vec::new();
+    for (index, set) in sets.iter().enumerate() {
+        // A file that several objects use is summarised once.
+        let known = sets[..index].iter().position(|earlier| Arc::ptr_eq(earlier, set));
+        let summary = match known {
+            Some(earlier) => Arc::clone(&summaries[earlier]),
+            None => Arc::new(summarize(set, progress)),
+        };
+        summaries.push(summary);
+    }
+    Ok(if args.json {
+        pretty(&scene_json(&input.scene, &plan, &summaries))
+    } else {
+        scene_text(&input.scene, &plan, &summaries)
+    })
+}
+
+fn summarize(set: &PointSet, progress: &Progress) -> PointSummary {
+    progress.stage("measuring the spacing", 1);
+    let spacing = median_spacing(&set.positions);
+    progress.clear();
+    PointSummary::new(set, spacing)
+}
+
+fn scene_json(scene: &Scene, plan: &Plan, summaries: &[Arc<PointSummary>]) -> Value {
+    let objects: Vec<Value> = (scene.objects.iter().zip(summaries))
+        .map(|(object, summary)| {
+            json!({
+                "name": object.name,
+                "file": object.points_as_written,
+                "points": summary.to_json(),
+            })
+        })
+        .collect();
+    let camera = scene.camera.map(|camera| {
+        json!({
+            "eye": camera.eye,
+            "target": camera.target,
+            "up": camera.up,
+            "vertical_fov": camera.vertical_fov,
+        })
+    });
+    let [min, max] = plan.cloud.bounds;
+    json!({
+        "format": "scene file",
+        "image": { "size": scene.image.size, "samples": scene.image.samples },
+        "camera": camera,
+        "lights": scene.lights.len(),
+        "points": plan.cloud.points.len(),
+        "bounds": { "min": min, "max": max },
+        "objects": objects,
+        "settings": scene.settings_toml(),
+    })
+}
+
+fn scene_text(scene: &Scene, plan: &Plan, summaries: &[Arc<PointSummary>]) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = write_scene(&mut text, scene, plan, summaries);
+    text
+}
+
+fn write_scene(
+    text: &mut String,
+    scene: &Scene,
+    plan: &Plan,
+    summaries: &[Arc<PointSummary>],
+) -> std::fmt::Result {
+    let corner = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
+    let [width, height] = scene.image.size;
+    writeln!(text, "image    {width}x{height}, samples {}", scene.image.samples)?;
+    match scene.camera {
+        Some(camera) => writeln!(
+            text,
+            "camera   at {}, towards {}, {} degrees",
+            corner(camera.eye),
+            corner(camera.target),
+            camera.vertical_fov
+        )?,
+        None => writeln!(text, "camera   framed on the scene")?,
+    }
+    let directional =
+        scene.lights.iter().filter(|light| matches!(light, Light::Directional { .. })).count();
+    let point = scene.lights.len() - directional;
+    writeln!(text, "lights   {directional} directional, {point} point")?;
+    writeln!(text, "points   {}", plan.cloud.points.len())?;
+    writeln!(text, "min      {}", corner(plan.cloud.bounds[0]))?;
+    writeln!(text, "max      {}", corner(plan.cloud.bounds[1]))?;
+    for ((object, summary), index) in scene.objects.iter().zip(summaries).zip(0..) {
+        writeln!(text, "\nobject {index} '{}', {}", object.name, object.points.display())?;
+        for line in summary.to_string().lines() {
+            writeln!(text, "  {line}")?;
+        }
+    }
+    Ok(())
+}
+
+fn pretty(value: &Value) -> String {
+    format!("{value:#}\n")
+}

@@ -1,0 +1,127 @@
+//! `render`: from a scene or a point file to pictures.
+
+use crate::args::RenderArgs;
+use crate::engine::{Built, Engine, Frame, with_engine};
+use crate::errors::Failure;
+use crate::input::{Input, SceneValues};
+use crate::progress::Progress;
+use crate::stats::{Measured, Row};
+use crate::{files, interrupt};
+use film::FileFormat;
+use plan::Plan;
+use points::Watch;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Renders. Whatever can be checked is checked before points are read.
+pub fn run(args: &RenderArgs) -> Result<(), Failure> {
+    for output in &args.outputs {
+        FileFormat::from_path(output)?;
+    }
+    let outputs: Vec<&Path> =
+        args.outputs.iter().chain(&args.stats).map(|path| path.as_path()).collect();
+    for output in &outputs {
+        files::check_output(output)?;
+    }
+    let mut values = SceneValues::new(&args.overrides);
+    if let Some(samples) = args.samples {
+        values.add("image.samples", &samples.to_string(), &format!("--samples {samples}"));
+    }
+    let input = Input::load(&args.scene, &values, args.up)?;
+    input.check_crop(args.crop)?;
+    files::check_distinct(&outputs, &input.files())?;
+    let progress = Progress::new(&args.progress);
+    with_engine(&args.device, |engine| render(args, &input, engine, &progress))
+}
+
+fn render(
+    args: &RenderArgs,
+    input: &Input,
+    engine: &Engine,
+    progress: &Progress,
+) -> Result<(), Failure> {
+    let started = Instant::now();
+    let sets = input.read_points(progress)?;
+    let dropped = sets.iter().map(|set| set.non_finite).sum();
+    let plan = input.plan(&sets, args.crop, progress)?;
+    drop(sets);
+    let read = started.elapsed();
+    let mut built = engine.build(&plan, progress)?;
+    let frame = built.frame(&plan, progress)?;
+    let wall = started.elapsed();
+    warn_of_missing_surfaces(&plan, &built, progress);
+
+    write_pictures(args, &plan, &frame, progress)?;
+    if let Some(path) = &args.stats {
+        let row = Row::new(&Measured {
+            name: input.name(),
+            engine,
+            plan: &plan,
+            built: &built,
+            frame: &frame,
+            trace: &[frame.trace],
+            wall: &[wall],
+            dropped,
+        });
+        files::write_json(path, &row)?;
+    }
+    progress.note(&summary(args, &plan, engine, &frame, [read, built.duration]));
+    Ok(())
+}
+
+fn write_pictures(
+    args: &RenderArgs,
+    plan: &Plan,
+    frame: &Frame,
+    progress: &Progress,
+) -> Result<(), Failure> {
+    progress.stage("writing pictures", args.outputs.len() as u64);
+    for (output, written) in args.outputs.iter().zip(1..) {
+        interrupt::writing(|| Ok(film::write(&frame.film, plan.provenance(), output)?))?;
+        progress.done(written);
+    }
+    progress.clear();
+    Ok(())
+}
+
+/// An object of one point, or of coinciding ones, is no error, but surely not what was meant.
+fn warn_of_missing_surfaces(plan: &Plan, built: &Built, progress: &Progress) {
+    for (slots, name) in plan.cloud.objects.iter().zip(&plan.names) {
+        let outcomes = &built.outcomes()[slots.range()];
+        if outcomes.iter().all(|outcome| outcome.trust <= 0.0) {
+            progress.note(&format!(
+                "warning: object '{name}': none of its {} points carries a surface, since points \
+                 without distinct neighbours have none; it renders as background",
+                outcomes.len()
+            ));
+        }
+    }
+}
+
+/// One line of what was done and how long it took.
+fn summary(
+    args: &RenderArgs,
+    plan: &Plan,
+    engine: &Engine,
+    frame: &Frame,
+    [read, built]: [Duration; 2],
+) -> String {
+    let outputs: Vec<String> =
+        args.outputs.iter().map(|output| output.display().to_string()).collect();
+    let [width, height] = plan.window.size;
+    let points = plan.cloud.points.len();
+    let passes = match frame.passes {
+        1 => "1 pass".to_owned(),
+        passes => format!("{passes} passes"),
+    };
+    format!(
+        "{}: {points} points, {width}x{height} on {}: read {:.2} s, built {:.2} s, traced {:.2} s \
+         in {passes} -> {}",
+        args.scene.display(),
+        engine.name(),
+        read.as_secs_f64(),
+        built.as_secs_f64(),
+        frame.trace.as_secs_f64(),
+        outputs.join(", ")
+    )
+}

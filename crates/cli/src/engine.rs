@@ -1,0 +1,220 @@
+//! What a plan runs on: a Vulkan device, or the CPU reference in single or double precision.
+
+use crate::args::DeviceArgs;
+use crate::errors::{Exit, Failure};
+use crate::interrupt;
+use crate::progress::Progress;
+use film::Film;
+use gpu::{Device, DeviceChoice, Instance, InstanceOptions};
+use kernels::layout::{FitOutcome, GridInfo};
+use plan::{Picture, Plan};
+use reference::Reference;
+use render::Renderer;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Turns the validation layer on where it is `1`; any message then ends the process with code 4.
+const VALIDATION: &str = "POINTILLIST_VALIDATION";
+
+/// Something that can execute a plan.
+#[derive(Debug)]
+pub enum Engine {
+    /// A Vulkan device.
+    Gpu(Arc<Device>),
+    /// The CPU twin in f32, whose pixels equal the kernels'.
+    Reference,
+    /// The CPU twin in f64, which says how far the others are from the truth.
+    ReferenceF64,
+}
+
+/// A plan's surfaces on its engine.
+pub struct Built {
+    surfaces: BuiltOn,
+    /// How long that took.
+    pub duration: Duration,
+}
+
+enum BuiltOn {
+    Gpu(Box<Renderer>),
+    Single(Reference<f32>),
+    Double(Reference<f64>),
+}
+
+/// One picture and what it cost.
+pub struct Frame {
+    /// The picture.
+    pub film: Film,
+    /// Pixels that hit a surface.
+    pub hits: u64,
+    /// Points that rays were tested against.
+    pub tests: u64,
+    /// Rays from the camera.
+    pub camera_rays: u64,
+    /// Dispatches of the traversal.
+    pub passes: u32,
+    /// From submission to completion of all passes.
+    pub trace: Duration,
+    /// The same with the picture read back.
+    pub wall: Duration,
+    /// Milliseconds of each kernel.
+    pub kernels: Vec<(&'static str, f64)>,
+}
+
+/// Opens the engine that was asked for, and lets `work` use it. What the validation layer has to say
+/// is said when everything is destroyed.
+pub fn with_engine<T>(
+    args: &DeviceArgs,
+    work: impl FnOnce(&Engine) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    let engine = Engine::open(args)?;
+    let result = work(&engine);
+    let Engine::Gpu(device) = engine else { return result };
+    let instance = Arc::clone(device.instance());
+    drop(device);
+    let messages = instance.validation_messages();
+    if messages.is_empty() {
+        return result;
+    }
+    let mut lines = result.err().map_or_else(Vec::new, |failure| failure.lines);
+    lines.extend(
+        messages.iter().map(|message| format!("validation: {}", message.replace('\n', " "))),
+    );
+    Err(Failure { exit: Exit::Exhausted, lines })
+}
+
+impl Engine {
+    fn open(args: &DeviceArgs) -> Result<Self, Failure> {
+        let choice = match args.device.as_deref() {
+            Some("reference") => return Ok(Self::Reference),
+            Some("reference-f64") => return Ok(Self::ReferenceF64),
+            Some(name) => DeviceChoice::Named(name.to_owned()),
+            None => DeviceChoice::Default,
+        };
+        let validation = std::env::var_os(VALIDATION).is_some_and(|value| value == "1");
+        let device = Instance::new(&InstanceOptions { validation })
+            .and_then(|instance| Device::open(&instance, &choice))
+            .map_err(|error| Failure::no_device(&error))?;
+        Ok(Self::Gpu(device))
+    }
+
+    /// Name for tables and messages.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Gpu(device) => device.info().name.clone(),
+            Self::Reference => "reference (CPU, f32)".to_owned(),
+            Self::ReferenceF64 => "reference (CPU, f64)".to_owned(),
+        }
+    }
+
+    /// Driver with its version; the reference has none.
+    pub fn driver(&self) -> String {
+        match self {
+            Self::Gpu(device) => device.info().driver.clone(),
+            Self::Reference | Self::ReferenceF64 => String::new(),
+        }
+    }
+
+    /// Fits the surfaces and builds the grid.
+    pub fn build(&self, plan: &Plan, progress: &Progress) -> Result<Built, Failure> {
+        let started = Instant::now();
+        let surfaces = interrupt::held(|| {
+            Ok(match self {
+                Self::Gpu(device) => BuiltOn::Gpu(Box::new(Renderer::new(device, plan, progress)?)),
+                Self::Reference => BuiltOn::Single(finished(Reference::new(plan, progress))?),
+                Self::ReferenceF64 => BuiltOn::Double(finished(Reference::new(plan, progress))?),
+            })
+        });
+        progress.clear();
+        Ok(Built { surfaces: surfaces?, duration: started.elapsed() })
+    }
+}
+
+impl Built {
+    /// Traces one picture.
+    pub fn frame(&mut self, plan: &Plan, progress: &Progress) -> Result<Frame, Failure> {
+        let frame = interrupt::held(|| self.traced(plan, progress));
+        progress.clear();
+        frame
+    }
+
+    fn traced(&mut self, plan: &Plan, progress: &Progress) -> Result<Frame, Failure> {
+        let started = Instant::now();
+        match &mut self.surfaces {
+            BuiltOn::Gpu(renderer) => {
+                let (picture, stats) = renderer.frame(plan, progress)?;
+                Ok(Frame {
+                    hits: picture.hits,
+                    tests: picture.tests,
+                    film: picture.finish(),
+                    camera_rays: stats.camera_rays,
+                    passes: stats.passes,
+                    trace: stats.trace,
+                    wall: started.elapsed(),
+                    kernels: stats.kernels,
+                })
+            }
+            BuiltOn::Single(reference) => {
+                Ok(Frame::of_reference(finished(reference.frame(plan, progress))?, started))
+            }
+            BuiltOn::Double(reference) => {
+                Ok(Frame::of_reference(finished(reference.frame(plan, progress))?, started))
+            }
+        }
+    }
+
+    /// How each fit ended, by slot.
+    pub fn outcomes(&self) -> &[FitOutcome] {
+        match &self.surfaces {
+            BuiltOn::Gpu(renderer) => &renderer.surfaces().outcomes,
+            BuiltOn::Single(reference) => &reference.outcomes,
+            BuiltOn::Double(reference) => &reference.outcomes,
+        }
+    }
+
+    /// Where the grid lies.
+    pub fn grid(&self) -> &GridInfo {
+        match &self.surfaces {
+            BuiltOn::Gpu(renderer) => &renderer.surfaces().grid,
+            BuiltOn::Single(reference) => &reference.grid,
+            BuiltOn::Double(reference) => &reference.grid,
+        }
+    }
+
+    /// Bytes that tracing needs: polynomials, cells and their lists.
+    pub fn bytes(&self) -> u64 {
+        fn of<R>(reference: &Reference<R>) -> u64 {
+            let lists = &reference.lists;
+            (size_of_val(reference.polynomials.as_slice())
+                + size_of_val(lists.cells.as_slice())
+                + size_of_val(lists.slots.as_slice())) as u64
+        }
+        match &self.surfaces {
+            BuiltOn::Gpu(renderer) => renderer.surfaces().bytes(),
+            BuiltOn::Single(reference) => of(reference),
+            BuiltOn::Double(reference) => of(reference),
+        }
+    }
+}
+
+impl Frame {
+    fn of_reference(picture: Picture, started: Instant) -> Self {
+        let elapsed = started.elapsed();
+        let (hits, tests) = (picture.hits, picture.tests);
+        let film = picture.finish();
+        Self {
+            hits,
+            tests,
+            camera_rays: film.window.pixels() as u64,
+            film,
+            passes: 1,
+            trace: elapsed,
+            wall: elapsed,
+            kernels: Vec::new(),
+        }
+    }
+}
+
+/// The reference gives nothing where the watcher asked for an end.
+fn finished<T>(result: Option<T>) -> Result<T, Failure> {
+    result.ok_or_else(Failure::interrupted)
+}

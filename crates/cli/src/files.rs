@@ -1,0 +1,125 @@
+//! Files that are asked for on the command line: checked before work begins, written aside and
+//! renamed when it is done.
+
+use crate::errors::{Exit, Failure};
+use crate::interrupt;
+use serde::Serialize;
+use std::fs;
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// Fails where `path` cannot become a file: a missing folder, one that may not be written to, a
+/// folder of that name. Leaves no trace.
+pub fn check_output(path: &Path) -> Result<(), Failure> {
+    let shown = path.display();
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => {
+            return Err(Failure::usage(format!(
+                "{shown}: found a folder, expected a file; add a file name"
+            )));
+        }
+        // A pipe or a device: it is written directly.
+        Ok(found) if !found.is_file() => return Ok(()),
+        _ => {}
+    }
+    let folder = folder_of(path);
+    let folder_shown = folder.display();
+    if !folder.is_dir() {
+        return Err(Failure::usage(format!(
+            "{shown}: the folder '{folder_shown}' does not exist; create it or choose another"
+        )));
+    }
+    tempfile::tempfile_in(folder).map_err(|error| {
+        write_failure(
+            path,
+            &error,
+            &format!("cannot write to the folder '{folder_shown}'; choose another"),
+        )
+    })?;
+    Ok(())
+}
+
+/// Fails where two of `outputs` are one file, or one of them is an input.
+pub fn check_distinct(outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure> {
+    let inputs: Vec<PathBuf> = inputs.iter().map(|path| identity(path)).collect();
+    let identities: Vec<PathBuf> = outputs.iter().map(|path| identity(path)).collect();
+    for (index, (path, id)) in outputs.iter().zip(&identities).enumerate() {
+        let shown = path.display();
+        if identities[..index].contains(id) {
+            return Err(Failure::usage(format!(
+                "{shown}: named twice as an output; give each its own name"
+            )));
+        }
+        if inputs.contains(id) {
+            return Err(Failure::usage(format!(
+                "{shown}: is also an input, which would be overwritten; choose another name"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Makes `path` a file of this text, whole or not at all.
+pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    interrupt::writing(|| {
+        store(path, text.as_bytes()).map_err(|error| {
+            write_failure(path, &error, "cannot write the file; check the disk and its folder")
+        })
+    })
+}
+
+/// Makes `path` a file of one JSON value.
+pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| Failure::exhausted(format!("{}: {error}", path.display())))?;
+    write(path, &format!("{text}\n"))
+}
+
+fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    // A link stays a link.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    if fs::metadata(&target).is_ok_and(|found| !found.is_file()) {
+        return fs::OpenOptions::new().write(true).open(&target)?.write_all(bytes);
+    }
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".pointillist-");
+    #[cfg(unix)]
+    let allowed = {
+        use std::os::unix::fs::PermissionsExt;
+        // What any program asks for; the system takes away what the user's umask forbids.
+        fs::Permissions::from_mode(0o666)
+    };
+    #[cfg(unix)]
+    builder.permissions(allowed);
+    let mut file = builder.tempfile_in(folder_of(&target))?;
+    file.write_all(bytes)?;
+    file.persist(&target)?;
+    Ok(())
+}
+
+fn write_failure(path: &Path, error: &io::Error, what: &str) -> Failure {
+    let exit = match error.kind() {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Exit::Exhausted,
+        _ => Exit::Usage,
+    };
+    Failure { exit, lines: vec![format!("{}: {what}: {error}", path.display())] }
+}
+
+/// The folder that a file lies in.
+fn folder_of(file: &Path) -> &Path {
+    match file.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// One path a file, however it is written.
+fn identity(path: &Path) -> PathBuf {
+    if let Ok(real) = fs::canonicalize(path) {
+        return real;
+    }
+    match (fs::canonicalize(folder_of(path)), path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => path.to_path_buf(),
+    }
+}

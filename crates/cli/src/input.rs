@@ -1,0 +1,179 @@
+//! From a path on the command line to a checked scene and its points.
+
+use crate::args::{Overrides, UpAxis};
+use crate::errors::Failure;
+use crate::progress::Progress;
+use plan::{Plan, PlanError, Window};
+use points::{PointSet, Watch};
+use scene::{Scene, Up};
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A scene, from a scene file or around a point file.
+#[derive(Debug)]
+pub struct Input {
+    /// As typed.
+    pub path: PathBuf,
+    /// What to render.
+    pub scene: Scene,
+    /// What turns the view where the scene has no camera.
+    pub up: Up,
+}
+
+/// Options of the command line that stand for values of the scene, later ones over earlier ones.
+#[derive(Debug, Default)]
+pub struct SceneValues {
+    /// `PATH=VALUE`, and the option as typed where it was not `--set`.
+    entries: Vec<(String, Option<String>)>,
+}
+
+impl SceneValues {
+    /// `--set` alone.
+    pub fn set(set: &[String]) -> Self {
+        Self { entries: set.iter().map(|entry| (entry.clone(), None)).collect() }
+    }
+
+    /// `--set`, `--size` and `--cells-per-pass`.
+    pub fn new(overrides: &Overrides) -> Self {
+        let mut values = Self::set(&overrides.set);
+        if let Some(size) = overrides.size {
+            values.add(
+                "image.size",
+                &format!("[{}, {}]", size.0, size.1),
+                &format!("--size {}x{}", size.0, size.1),
+            );
+        }
+        if let Some(cells) = overrides.cells_per_pass {
+            values.add(
+                "render.cells_per_pass",
+                &cells.to_string(),
+                &format!("--cells-per-pass {cells}"),
+            );
+        }
+        values
+    }
+
+    /// One option.
+    pub fn add(&mut self, path: &str, value: &str, option: &str) {
+        self.entries.push((format!("{path}={value}"), Some(option.to_owned())));
+    }
+
+    fn as_set(&self) -> Vec<String> {
+        self.entries.iter().map(|entry| entry.0.clone()).collect()
+    }
+
+    /// The scene knows of `--set` alone; the user is told of what was typed.
+    fn name_options(&self, mut failure: Failure) -> Failure {
+        for (value, option) in &self.entries {
+            let Some(option) = option else { continue };
+            for line in &mut failure.lines {
+                *line = line.replace(&format!("--set {value}"), option);
+            }
+        }
+        failure
+    }
+}
+
+/// Whether a path is a scene file's rather than a point file's.
+pub fn is_scene_file(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+}
+
+impl Input {
+    /// Loads and checks a scene file, or makes the scene that a point file means. Reads no points.
+    pub fn load(path: &Path, values: &SceneValues, up: Option<UpAxis>) -> Result<Self, Failure> {
+        let set = values.as_set();
+        let loaded = if is_scene_file(path) {
+            Scene::load(path, &set)
+        } else {
+            Scene::for_point_file(path, up.map_or(Up::Y, Up::from), &set)
+        };
+        let mut scene = loaded.map_err(|error| values.name_options(error.into()))?;
+        if let (true, Some(_), Some(_)) = (is_scene_file(path), up, scene.camera) {
+            return Err(Failure::usage(format!(
+                "{}: --up is for point files and for scenes without a camera, but this one has \
+                 [camera]; set camera.up there, or leave --up out",
+                path.display()
+            )));
+        }
+        if let ([object], false) = (scene.objects.as_mut_slice(), is_scene_file(path)) {
+            // A header must not tell in which folder of which machine a picture was made.
+            object.points_as_written =
+                path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        }
+        Ok(Self { path: path.into(), scene, up: up.map_or(Up::Y, Up::from) })
+    }
+
+    /// Every file that the picture is made from.
+    pub fn files(&self) -> Vec<&Path> {
+        let points = self.scene.objects.iter().map(|object| object.points.as_path());
+        std::iter::once(self.path.as_path()).chain(points).collect()
+    }
+
+    /// Name in tables and statistics.
+    pub fn name(&self) -> String {
+        self.path.file_stem().unwrap_or(self.path.as_os_str()).to_string_lossy().into_owned()
+    }
+
+    /// Fails where a crop does not lie inside the picture: before points are read.
+    pub fn check_crop(&self, crop: Option<Window>) -> Result<(), Failure> {
+        let image = self.scene.image.size;
+        let Some(crop) = crop else { return Ok(()) };
+        let inside = (0..2).all(|axis| {
+            let end = crop.origin[axis].checked_add(crop.size[axis]);
+            crop.size[axis] > 0 && end.is_some_and(|end| end <= image[axis])
+        });
+        if inside { Ok(()) } else { Err(PlanError::Crop { crop, image }.into()) }
+    }
+
+    /// Reads the points of every object, each file once, and warns of those that are of no use.
+    pub fn read_points(&self, progress: &Progress) -> Result<Vec<Arc<PointSet>>, Failure> {
+        let mut read: HashMap<PathBuf, Arc<PointSet>> = HashMap::new();
+        let mut sets = Vec::new();
+        for object in &self.scene.objects {
+            let path = &object.points;
+            let file = fs::canonicalize(path).unwrap_or_else(|_| path.clone());
+            let set = match read.get(&file) {
+                Some(set) => Arc::clone(set),
+                None => {
+                    let set = Arc::new(read_file(path, progress)?);
+                    read.insert(file, Arc::clone(&set));
+                    set
+                }
+            };
+            sets.push(set);
+        }
+        Ok(sets)
+    }
+
+    /// Plans the render. This checks whatever of the scene depends on its points.
+    pub fn plan(
+        &self,
+        sets: &[Arc<PointSet>],
+        crop: Option<Window>,
+        progress: &Progress,
+    ) -> Result<Plan, Failure> {
+        progress.stage("sorting points", 1);
+        let plan = Plan::new(&self.scene, sets, crop, self.up)?;
+        progress.clear();
+        Ok(plan)
+    }
+}
+
+/// Reads one point file, and warns of points that are of no use.
+pub fn read_file(path: &Path, progress: &Progress) -> Result<PointSet, Failure> {
+    progress.stage("reading points", fs::metadata(path).map_or(0, |file| file.len()));
+    let set = points::read(path, &mut |done, _| progress.done(done))?;
+    progress.clear();
+    if set.non_finite > 0 {
+        progress.note(&format!(
+            "warning: {}: dropped {} of {} points, whose position is infinite or not a number",
+            path.display(),
+            set.non_finite,
+            set.non_finite + set.len() as u64
+        ));
+    }
+    Ok(set)
+}

@@ -1,0 +1,71 @@
+//! Ctrl-C, SIGTERM and SIGHUP.
+//!
+//! The first signal asks work that looks for it (see [`held`]) to stop; anything else has nothing to
+//! clean up and ends at once. The second signal ends the process at once, but lets a file that is
+//! being written be finished: half-written files are never left behind.
+
+use crate::errors::{Exit, Failure};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::time::Duration;
+
+static REQUESTED: AtomicBool = AtomicBool::new(false);
+/// Pieces of work under way that look at `REQUESTED`, or that must not be cut off.
+static HELD: AtomicU32 = AtomicU32::new(0);
+/// Files being written.
+static WRITING: AtomicU32 = AtomicU32::new(0);
+
+/// Takes over the signals.
+pub fn install() -> Result<(), Failure> {
+    ctrlc::set_handler(|| {
+        let again = REQUESTED.swap(true, Ordering::SeqCst);
+        if again {
+            // A file is written in moments; one that never ends must not hold the user up.
+            for _ in 0..200 {
+                if WRITING.load(Ordering::SeqCst) == 0 {
+                    break;
+                }
+                std::thread::sleep(Duration::from_millis(10));
+            }
+        } else if HELD.load(Ordering::SeqCst) > 0 {
+            return;
+        }
+        std::process::exit(i32::from(Exit::Interrupted.code()));
+    })
+    .map_err(|error| Failure::exhausted(format!("cannot handle interruptions: {error}")))
+}
+
+/// Whether an end was asked for.
+pub fn requested() -> bool {
+    REQUESTED.load(Ordering::SeqCst)
+}
+
+/// Runs work that ends soon after [`requested`] turns true.
+pub fn held<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    let _held = Counted::new(&HELD);
+    let result = work()?;
+    if requested() { Err(Failure::interrupted()) } else { Ok(result) }
+}
+
+/// Runs work that writes a file.
+pub fn writing<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    held(|| {
+        let _writing = Counted::new(&WRITING);
+        if requested() { Err(Failure::interrupted()) } else { work() }
+    })
+}
+
+/// Counts itself, also while a panic unwinds.
+struct Counted(&'static AtomicU32);
+
+impl Counted {
+    fn new(counter: &'static AtomicU32) -> Self {
+        counter.fetch_add(1, Ordering::SeqCst);
+        Self(counter)
+    }
+}
+
+impl Drop for Counted {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::SeqCst);
+    }
+}

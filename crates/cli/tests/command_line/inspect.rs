@@ -1,0 +1,104 @@
+//! `info`, `check`, `schema`: results alone on stdout.
+
+use crate::{Folder, ply, pointillist, run_in, sphere};
+use serde_json::{Value, json};
+use std::process::Stdio;
+
+#[test]
+fn info_of_a_point_file_is_one_json_object() {
+    let folder = Folder::new();
+    folder.write("a.ply", &ply(&["0 0 0", "1 0 0", "1 0 0", "4 2 0", "nan 0 0"]));
+    let ran = run_in(folder.path(), &["info", "a.ply", "--json"]).succeeds();
+    let info: Value = serde_json::from_str(&ran.stdout).expect("JSON alone on stdout");
+    assert_eq!(info["points"], 4);
+    assert_eq!(info["dropped"]["count"], 1);
+    assert_eq!(info["bounds"], json!({ "min": [0.0, 0.0, 0.0], "max": [4.0, 2.0, 0.0] }));
+    // The nearest others are 1, 0, 0 and the root of 13 away.
+    assert_eq!(info["spacing"], 0.5);
+    assert!(info["format"].as_str().expect("a name").contains("PLY"), "{info}");
+    assert!(info["attributes"].is_object(), "{info}");
+
+    folder.write("ball.ply", &sphere(100));
+    let ran = run_in(folder.path(), &["info", "ball.ply", "--json"]).succeeds();
+    assert_eq!(ran.stderr, "");
+    let info: Value = serde_json::from_str(&ran.stdout).expect("JSON alone on stdout");
+    assert_eq!(info["attributes"]["green"], json!({ "min": 100.0, "max": 100.0 }));
+    let text = run_in(folder.path(), &["info", "ball.ply"]).succeeds().stdout;
+    assert!(text.contains("100") && text.contains("green"), "{text}");
+}
+
+#[test]
+fn info_of_a_scene_lists_its_objects() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(100));
+    folder.write(
+        "s.toml",
+        "[image]\nsize = [32, 24]\n[[objects]]\npoints = \"ball.ply\"\n[[objects]]\n\
+         name = \"far\"\npoints = \"ball.ply\"\ntransform.translate = [10, 0, 0]\n",
+    );
+    let ran = run_in(folder.path(), &["info", "s.toml", "--json"]).succeeds();
+    let info: Value = serde_json::from_str(&ran.stdout).expect("JSON alone on stdout");
+    assert_eq!(info["points"], 200);
+    assert_eq!(info["image"]["size"], json!([32, 24]));
+    assert_eq!(info["objects"][1]["name"], "far");
+    assert!(info["bounds"]["max"][0].as_f64().expect("a number") > 10.5, "{info}");
+    let text = run_in(folder.path(), &["info", "s.toml"]).succeeds().stdout;
+    assert!(text.contains("'ball'") && text.contains("'far'"), "{text}");
+}
+
+#[test]
+fn check_says_ok_in_one_line() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(100));
+    folder.write("plain.ply", &ply(&["0 0 0", "1 0 0"]));
+    folder.write("s.toml", "[[objects]]\npoints = \"ball.ply\"\n");
+    assert_eq!(
+        run_in(folder.path(), &["check", "s.toml"]).succeeds().stdout,
+        "s.toml: ok, 1 object\n"
+    );
+    run_in(folder.path(), &["check", "s.toml", "--set", "objects.0.surface.trust=7"])
+        .fails_with(2, &["objects[0].surface.trust", "7"]);
+    // What depends on the points is checked too.
+    let plain = [
+        "--set",
+        "objects.0.points=\"plain.ply\"",
+        "--set",
+        "objects.0.material.albedo=\"points\"",
+    ];
+    run_in(folder.path(), &[&["check", "s.toml"][..], &plain].concat())
+        .fails_with(2, &["plain.ply", "no colours"]);
+}
+
+#[test]
+fn the_schema_is_json() {
+    let ran = run_in(Folder::new().path(), &["schema"]).succeeds();
+    let schema: Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    assert!(schema["properties"]["objects"].is_object());
+}
+
+/// As `pointillist schema | head -c 1` does: the pipe is closed long before everything is written.
+#[test]
+fn a_reader_that_leaves_is_no_error() {
+    for arguments in [&["schema"][..], &["--help"]] {
+        let mut child = pointillist()
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the binary starts");
+        drop(child.stdout.take());
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        assert!(output.stderr.is_empty(), "{output:?}");
+    }
+}
+
+/// A full disk, as far as it can be had without one.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_result_that_cannot_be_written_is_4() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("/dev/full");
+    let output = pointillist().arg("schema").stdout(full).output().expect("the binary starts");
+    assert_eq!(output.status.code(), Some(4), "{output:?}");
+    assert!(!output.stderr.is_empty());
+}

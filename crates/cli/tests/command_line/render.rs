@@ -1,0 +1,166 @@
+//! Pictures, by the CPU reference.
+
+use crate::{Folder, Ran, ply, pointillist, run_in, sphere};
+use serde_json::Value;
+use std::path::Path;
+
+const SMALL: [&str; 5] = ["--device", "reference", "--size", "64x48", "--quiet"];
+
+fn render(folder: &Folder, arguments: &[&str]) -> Ran {
+    run_in(folder.path(), &[&["render"], arguments, &SMALL].concat())
+}
+
+fn json(path: &Path) -> Value {
+    let text = std::fs::read_to_string(path).expect("a JSON file");
+    serde_json::from_str(&text).expect("valid JSON")
+}
+
+#[test]
+fn one_render_writes_every_format_and_says_nothing_when_quiet() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(2000));
+    let outputs = [
+        "ball.ply", "-o", "a.exr", "-o", "a.png", "-o", "a.jpg", "-o", "b.JPEG", "--stats",
+        "a.json",
+    ];
+    let ran = render(&folder, &outputs).succeeds();
+    assert_eq!((ran.stdout.as_str(), ran.stderr.as_str()), ("", ""));
+    assert_eq!(folder.names(), ["a.exr", "a.jpg", "a.json", "a.png", "b.JPEG", "ball.ply"]);
+    let starts = |name: &str, magic: &[u8]| {
+        let bytes = std::fs::read(folder.path().join(name)).expect("a picture");
+        assert!(bytes.starts_with(magic), "{name}");
+    };
+    starts("a.exr", b"\x76\x2f\x31\x01");
+    starts("a.png", b"\x89PNG\r\n\x1a\n");
+    starts("a.jpg", b"\xff\xd8\xff");
+    starts("b.JPEG", b"\xff\xd8\xff");
+
+    let row = json(&folder.path().join("a.json"));
+    assert_eq!(row["name"], "ball");
+    assert_eq!(row["rays"]["camera"], 64 * 48);
+    for kind in ["shadow", "reflected", "refracted"] {
+        assert_eq!(row["rays"][kind], 0);
+    }
+    for time in ["trace_ms", "wall_ms", "build_ms"] {
+        for part in ["median", "min", "max"] {
+            assert!(row[time][part].as_f64().expect("a number") >= 0.0, "{row}");
+        }
+    }
+    assert_eq!(row["points"], 2000);
+    assert_eq!(row["fits"]["full"], 2000);
+    assert_eq!(row["passes"], 1);
+    assert!(row["tests_per_ray"].as_f64().expect("a number") > 1.0, "{row}");
+    assert!(row["bytes_per_point"].as_f64().expect("a number") > 64.0, "{row}");
+    assert_eq!(row["pixels"].as_str().expect("a hash").len(), 16);
+    // The framed sphere fills some of the picture, but not all of it.
+    let hits = row["hits"].as_u64().expect("a count");
+    assert!((300..64 * 48 - 300).contains(&hits), "{hits} pixels hit");
+}
+
+#[test]
+fn the_same_render_gives_the_same_bytes_wherever_it_is_started() {
+    let folder = Folder::new();
+    let points = folder.write("ball.ply", &sphere(500));
+    let absolute = points.to_str().expect("UTF-8");
+    render(&folder, &["ball.ply", "-o", "a.exr"]).succeeds();
+    render(&folder, &[absolute, "-o", "b.exr", "--cells-per-pass", "1"]).succeeds();
+    let read = |name: &str| std::fs::read(folder.path().join(name)).expect("a picture");
+    assert!(read("a.exr") == read("b.exr"));
+}
+
+#[test]
+fn a_crop_is_a_part_of_the_whole() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(500));
+    render(&folder, &["ball.ply", "-o", "whole.exr"]).succeeds();
+    render(&folder, &["ball.ply", "-o", "part.exr", "--crop", "20,10,30,25"]).succeeds();
+    let read = |name: &str| film::read_exr(&folder.path().join(name)).expect("an EXR");
+    let (whole, part) = (read("whole.exr"), read("part.exr"));
+    assert_eq!((part.data_origin, part.data_size), ([20, 10], [30, 25]));
+    assert_eq!(part.display_size, [64, 48]);
+    for (name, values) in &part.channels {
+        let all = &whole.channels[name];
+        for (i, value) in values.iter().enumerate() {
+            let (x, y) = (20 + i % 30, 10 + i / 30);
+            assert_eq!(value.to_bits(), all[y * 64 + x].to_bits(), "{name} at {x}, {y}");
+        }
+    }
+}
+
+#[test]
+fn double_precision_is_another_device() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(500));
+    let f64_device = ["--device", "reference-f64", "--size", "64x48"];
+    let arguments = ["render", "ball.ply", "-o", "a.png", "--stats", "a.json"];
+    run_in(folder.path(), &[&arguments[..], &f64_device].concat()).succeeds();
+    assert_eq!(json(&folder.path().join("a.json"))["device"], "reference (CPU, f64)");
+}
+
+/// Two objects of one file; `--set` reaches into the second.
+#[test]
+fn a_scene_is_rendered_with_its_overrides() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(500));
+    let object = "[[objects]]\npoints = \"ball.ply\"\n";
+    folder.write("two.toml", &format!("{object}{object}transform.translate = [3, 0, 0]\n"));
+    let hash = |option: &[&str]| {
+        let base = ["two.toml", "-o", "a.png", "--stats", "a.json"];
+        render(&folder, &[&base[..], option].concat()).succeeds();
+        let row = json(&folder.path().join("a.json"));
+        assert_eq!(row["points"], 1000);
+        row["pixels"].as_str().expect("a hash").to_owned()
+    };
+    let plain = hash(&[]);
+    assert_eq!(plain, hash(&[]));
+    assert_ne!(plain, hash(&["--set", "objects.1.transform.scale=0.5"]));
+}
+
+#[test]
+fn useless_points_are_counted_and_an_object_without_surface_is_background() {
+    let folder = Folder::new();
+    folder.write("one.ply", &ply(&["1 2 3", "nan 0 0", "0 inf 0"]));
+    let arguments = ["render", "one.ply", "-o", "a.png", "--device", "reference", "--size", "8x8"];
+    let ran = run_in(folder.path(), &arguments).succeeds();
+    assert!(ran.stderr.contains("one.ply: dropped 2 of 3 points"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("object 'one'"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("background"), "{}", ran.stderr);
+    assert_eq!(ran.stdout, "");
+    folder.write("none.ply", &ply(&["nan 0 0"]));
+    render(&folder, &["none.ply", "-o", "b.png"]).fails_with(2, &["none.ply"]);
+}
+
+/// Names of files are bytes.
+#[cfg(target_os = "linux")]
+#[test]
+fn names_need_not_be_utf_8() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let folder = Folder::new();
+    let points = folder.write(OsStr::from_bytes(b"b\xe4ll.ply"), &sphere(200));
+    let output = folder.path().join(OsStr::from_bytes(b"b\xe4ll.exr"));
+    let mut command = pointillist();
+    command.arg("render").arg(points).arg("-o").arg(&output).args(SMALL);
+    Ran::of(&mut command).succeeds();
+    assert!(output.is_file());
+}
+
+#[test]
+fn bench_times_frames_on_the_reference() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(500));
+    let options = ["bench", "ball.ply", "--runs", "3", "--json", "b.json", "--markdown", "b.md"];
+    let ran = run_in(folder.path(), &[&options[..], &SMALL].concat()).succeeds();
+    assert!(ran.stdout.contains("ball") && ran.stdout.contains("trace ms"), "{}", ran.stdout);
+    let report = json(&folder.path().join("b.json"));
+    for key in ["device", "driver", "cpu", "version"] {
+        assert!(report[key].is_string(), "{report}");
+    }
+    let rows = report["rows"].as_array().expect("rows");
+    assert_eq!(rows.len(), 1);
+    assert_eq!(rows[0]["name"], "ball");
+    let trace = &rows[0]["trace_ms"];
+    assert!(trace["min"].as_f64() <= trace["median"].as_f64(), "{report}");
+    let markdown = std::fs::read_to_string(folder.path().join("b.md")).expect("a table");
+    assert!(markdown.contains("| ball | 500 |"), "{markdown}");
+}
