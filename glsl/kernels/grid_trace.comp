@@ -21,13 +21,13 @@
 #include "grid.glsl"
 #include "polynomial.glsl"
 #include "state.glsl"
+#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = TILE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
 layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
-layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
 layout(push_constant) uniform Push { TraceParams params; };
 
@@ -47,22 +47,23 @@ void main() {
     uint next = range.x + ray.cursor;
     uint hit_object = NONE, hit_index = NONE;
     if (alive && ray.hit_slot != NONE) {
-        hit_object = polynomials[ray.hit_slot].object;
-        hit_index = polynomials[ray.hit_slot].index;
+        Polynomial hit = polynomial_of(ray.hit_slot);
+        hit_object = hit.object;
+        hit_index = hit.index;
     }
 
     while (alive && cells_left > 0u && work_left > 0u) {
         uint count = min(range.y - next, BATCH);
         uint candidates = 0u;
         for (uint j = 0u; j < count; ++j) {
-            bool near = near_trust_ball(o, d, polynomials[slots[next + j]].center_trust, ray.hit_t);
+            bool near = near_trust_ball(o, d, center_trust_of(slots[next + j]), ray.hit_t);
             candidates |= near ? 1u << j : 0u;
         }
         uint solved = 0u;
         while (candidates != 0u) {
             uint slot = slots[next + uint(findLSB(candidates))];
             candidates &= candidates - 1u;
-            Polynomial p = polynomials[slot];
+            Polynomial p = polynomial_of(slot);
             float t = intersect(o, d, p);
             bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);
             bool better = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);

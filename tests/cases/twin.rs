@@ -6,6 +6,7 @@ use harness::{
     random, render_twin, set_of, wavy_sheet,
 };
 use points::PointSet;
+use render::Records;
 
 const LIGHTS: &str = "
 [[lights]]
@@ -166,6 +167,16 @@ fn a_cell_with_too_many_points_for_one_pass_is_finished_in_the_next() {
     assert!(one_cell.tests >= 150_000 * 24, "tests: {}", one_cell.tests);
     plan.grid_resolution = 0;
     assert_same_film("one cell", &one_cell.film, &render_twin(&plan).film);
+}
+
+/// SwiftShader, for one, allows too few texels for most scenes.
+#[test]
+fn storage_and_texel_buffers_give_the_same_bytes() {
+    let plan = plan_of(&format!("{SMALL}\n{LIGHTS}"), &[set_of(fibonacci_sphere(10_000))]);
+    let bench = Bench::open();
+    let [storage, texels] =
+        [Records::Storage, Records::Texels].map(|records| bench.render_with(&plan, records));
+    assert_same_bits("records", &storage, &texels);
 }
 
 /// Two runs, two renderers: the same bytes.

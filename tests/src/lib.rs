@@ -6,7 +6,6 @@
 #![allow(
     clippy::expect_used,
     clippy::panic,
-    clippy::print_stderr,
     reason = "a test fails by panicking, and says what it skips"
 )]
 
@@ -20,7 +19,7 @@ use kernels::layout;
 use plan::{Picture, Plan};
 use points::{PointSet, Unwatched};
 use reference::Reference;
-use render::Renderer;
+use render::{Records, Renderer};
 use scene::{Scene, Up};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -46,7 +45,14 @@ impl Bench {
     /// Builds and traces a plan on the device.
     #[must_use]
     pub fn render(&self, plan: &Plan) -> Rendered {
-        let mut renderer = Renderer::new(&self.device, plan, &Unwatched).expect("builds");
+        self.render_with(plan, Records::best_for(&self.device, plan.cloud.points.len()))
+    }
+
+    /// The same with a given way to read polynomials.
+    #[must_use]
+    pub fn render_with(&self, plan: &Plan, records: Records) -> Rendered {
+        let mut renderer =
+            Renderer::with_records(&self.device, plan, records, &Unwatched).expect("builds");
         let (picture, stats) = renderer.frame(plan, &Unwatched).expect("renders");
         let surfaces = renderer.surfaces();
         let mut polynomials =
@@ -183,7 +189,9 @@ pub fn shared_data(file: &str) -> Option<PathBuf> {
     if path.exists() {
         return Some(path);
     }
-    eprintln!("SKIPPED: {file}: {} is missing", path.display());
+    // Not eprintln!: the test runner swallows what a passing test prints.
+    let line = format!("SKIPPED: {file}: {} is missing\n", path.display());
+    std::io::Write::write_all(&mut std::io::stderr(), line.as_bytes()).expect("stderr");
     None
 }
 

@@ -15,11 +15,12 @@ pub fn spirv_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("spirv")
 }
 
-/// A kernel's text and that of every file it includes, directly or not, by file name.
+/// The text of a module's kernel and of every file it includes, directly or not, by file name.
 ///
 /// # Errors
 /// A file that is missing or cannot be read, by its path.
-pub fn with_includes(kernel: &str) -> Result<BTreeMap<String, String>, String> {
+pub fn with_includes(module: &str) -> Result<BTreeMap<String, String>, String> {
+    let (kernel, _) = crate::spirv::source_of(module);
     let folder = glsl_folder();
     let file = format!("{kernel}.comp");
     let mut found = BTreeMap::new();
@@ -41,15 +42,16 @@ fn included_file(line: &str) -> Option<&str> {
     line.trim_start().strip_prefix("#include \"")?.split('"').next()
 }
 
-/// SHA-256 over the names and texts of a kernel and its includes, in hexadecimal.
+/// SHA-256 over a module's macro and the names and texts of its kernel and includes, in hexadecimal.
 ///
 /// # Errors
 /// As [`with_includes`].
 #[cfg(any(test, feature = "compile"))]
-pub fn hash(kernel: &str) -> Result<String, String> {
+pub fn hash(module: &str) -> Result<String, String> {
     use sha2::Digest;
     let mut hasher = sha2::Sha256::new();
-    for (name, text) in with_includes(kernel)? {
+    hasher.update(crate::spirv::source_of(module).1.unwrap_or_default().as_bytes());
+    for (name, text) in with_includes(module)? {
         hasher.update(name.as_bytes());
         hasher.update([0]);
         hasher.update(text.as_bytes());
@@ -89,6 +91,7 @@ mod tests {
             .map(|entry| entry.expect("entry").path())
             .map(|path| path.file_stem().expect("stem").to_string_lossy().into_owned())
             .collect();
+        stems.extend(crate::spirv::VARIANTS.iter().map(|variant| variant.0.to_owned()));
         stems.sort();
         assert_eq!(stems, crate::spirv::NAMES);
     }

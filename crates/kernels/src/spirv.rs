@@ -2,7 +2,8 @@
 
 macro_rules! modules {
     ($($(#[$doc:meta])* $name:ident),* $(,)?) => {
-        /// Names of all kernels: stems of `glsl/kernels/*.comp` and of `spirv/*.spv`.
+        /// Names of all modules: stems of `spirv/*.spv`, and, but for [`VARIANTS`], of
+        /// `glsl/kernels/*.comp`.
         pub const NAMES: &[&str] = &[$(stringify!($name)),*];
 
         $($(#[$doc])*
@@ -35,6 +36,8 @@ modules! {
     grid_ranges,
     /// One pass of the traversal.
     grid_trace,
+    /// The same, reading polynomials through a uniform texel buffer.
+    grid_trace_texels,
     /// Prefix sums, second half.
     scan_apply,
     /// Prefix sums, first half.
@@ -45,6 +48,19 @@ modules! {
     sort_count,
     /// Stable sort by one digit, second half.
     sort_scatter,
+}
+
+/// Modules made of another kernel's source with a macro defined: name, kernel, macro.
+pub const VARIANTS: &[(&str, &str, &str)] =
+    &[("grid_trace_texels", "grid_trace", "RECORDS_AS_TEXELS")];
+
+/// The kernel whose source a module is made of, and the macro it is compiled with, if any.
+#[must_use]
+pub fn source_of(name: &str) -> (&str, Option<&'static str>) {
+    VARIANTS
+        .iter()
+        .find(|variant| variant.0 == name)
+        .map_or((name, None), |variant| (variant.1, Some(variant.2)))
 }
 
 /// Words of a module, whatever the alignment of its bytes.

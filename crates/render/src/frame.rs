@@ -1,7 +1,7 @@
 //! One frame: tile after tile, pass after pass.
 
 use crate::RenderError;
-use crate::passes::{CameraRays, GridTrace, GridTraceIo, Shade, ShadeIo};
+use crate::passes::{CameraRays, GridTrace, GridTraceIo, Records, Shade, ShadeIo};
 use crate::state::RayState;
 use gpu::{Buffer, Device, Recorder};
 use kernels::layout::{FilmPixel, TraceParams};
@@ -67,6 +67,19 @@ impl Renderer {
     /// # Errors
     /// A device without the memory, a buffer over its limits, a lost device, an interruption.
     pub fn new(device: &Arc<Device>, plan: &Plan, watch: &dyn Watch) -> Result<Self, RenderError> {
+        Self::with_records(device, plan, Records::best_for(device, plan.cloud.points.len()), watch)
+    }
+
+    /// As [`Renderer::new`], with a given way to read polynomials.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn with_records(
+        device: &Arc<Device>,
+        plan: &Plan,
+        records: Records,
+        watch: &dyn Watch,
+    ) -> Result<Self, RenderError> {
         let surfaces =
             Surfaces::build(device, &plan.cloud, &plan.fits, plan.grid_resolution, watch)?;
         let tiles = plan.tiles();
@@ -83,7 +96,7 @@ impl Renderer {
             live: Buffer::new(device, "live rays", 4)?,
             state: RayState::new(device, tile_size)?,
             camera_rays: CameraRays::new(device)?,
-            grid_trace: GridTrace::new(device)?,
+            grid_trace: GridTrace::new(device, records)?,
             shade: Shade::new(device)?,
             recorder: Recorder::new(device)?,
         })

@@ -11,6 +11,7 @@ mod passes;
 mod state;
 
 pub use frame::{FrameStats, Renderer};
+pub use passes::Records;
 pub use points::device::BuildError;
 
 /// Why a frame could not be finished.

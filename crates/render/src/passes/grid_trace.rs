@@ -11,6 +11,31 @@ use kernels::spirv;
 use points::device::Surfaces;
 use std::sync::Arc;
 
+/// How the pass reads polynomials. Both give the same bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Records {
+    /// Through a storage buffer, on any device.
+    Storage,
+    /// Through a uniform texel buffer, where one may be long enough.
+    Texels,
+}
+
+impl Records {
+    /// Texels of 16 bytes that a polynomial takes.
+    const TEXELS: u64 = 4;
+
+    /// Texels where the device's limit allows them for so many points.
+    #[must_use]
+    pub fn best_for(device: &Device, points: usize) -> Self {
+        let needed = points as u64 * Self::TEXELS;
+        if needed <= u64::from(device.limits().max_texel_buffer_elements) {
+            Self::Texels
+        } else {
+            Self::Storage
+        }
+    }
+}
+
 /// What the pass works on.
 pub(crate) struct GridTraceIo<'a> {
     pub surfaces: &'a Surfaces,
@@ -27,13 +52,18 @@ pub(crate) struct GridTrace {
 impl GridTrace {
     pub const NAME: &'static str = "grid_trace";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, records: Records) -> Result<Self, GpuError> {
+        let (module, polynomials) = match records {
+            Records::Texels => (spirv::grid_trace_texels(), Binding::UniformTexelBuffer),
+            Records::Storage => (spirv::grid_trace(), Binding::StorageBuffer),
+        };
         let mut bindings = state_bindings(STATE_IN).to_vec();
         bindings.extend(state_bindings(STATE_OUT));
-        let buffers = [TRACE_INFO, TRACE_CELLS, TRACE_SLOTS, TRACE_POLYNOMIALS, TRACE_LIVE];
+        let buffers = [TRACE_INFO, TRACE_CELLS, TRACE_SLOTS, TRACE_LIVE];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        bindings.push((TRACE_POLYNOMIALS, polynomials));
         let params = size_of::<TraceParams>();
-        let kernel = Kernel::new(device, Self::NAME, &spirv::grid_trace(), &bindings, params)?;
+        let kernel = Kernel::new(device, Self::NAME, &module, &bindings, params)?;
         Ok(Self { kernel })
     }
 

@@ -5,6 +5,7 @@ mod grid_trace;
 mod shade;
 
 pub(crate) use camera_rays::CameraRays;
+pub use grid_trace::Records;
 pub(crate) use grid_trace::{GridTrace, GridTraceIo};
 pub(crate) use shade::{Shade, ShadeIo};
 
