@@ -10,11 +10,16 @@ mod cloud;
 pub mod device;
 mod grid;
 pub mod neighbors;
+mod ply;
+mod read;
 mod set;
+mod summary;
 mod watch;
 
 pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange};
 pub use grid::plan_grid;
 pub use neighbors::NeighborSearch;
-pub use set::PointSet;
+pub use read::{PointsError, read};
+pub use set::{Attribute, ColorEncoding, PointSet, Values};
+pub use summary::{Dropped, PointSummary, Range};
 pub use watch::{Unwatched, Watch};

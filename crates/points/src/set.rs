@@ -1,12 +1,183 @@
-//! A point file's contents, as read.
+//! A point set as a file holds it.
 
 /// Positions and attributes of one point file, in the file's own coordinates.
+///
+/// All lists are of one length, at most `u32::MAX`: one entry for each point kept, in the order of
+/// the file. What [`read`](crate::read) returns has at least one point. Every position is finite;
+/// colours, normals and attributes may hold anything.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PointSet {
-    /// Finite positions.
+    /// Positions, each coordinate exactly as the file's number type holds it.
     pub positions: Vec<[f64; 3]>,
-    /// Place in the file of each.
+    /// Place in the file of each point, from 0, counting dropped ones.
     pub file_index: Vec<u32>,
-    /// Linear RGB.
+    /// Linear RGB, 1 at full intensity. See [`ColorEncoding`] for how the file's values became it.
     pub colors: Option<Vec<[f32; 3]>>,
+    /// How the file stores colours; `None` where it has none.
+    pub color_encoding: Option<ColorEncoding>,
+    /// Normals as the file has them: of any length, pointing either way.
+    pub normals: Option<Vec<[f32; 3]>>,
+    /// Every other number of a point, in the order of the file.
+    pub attributes: Vec<Attribute>,
+    /// How many points were dropped for a coordinate that is infinite or not a number.
+    pub non_finite: u64,
+    /// The file format in words, such as `PLY 1.0, binary little-endian`.
+    pub format: String,
+}
+
+/// A number that every point has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attribute {
+    /// Its name in the file.
+    pub name: String,
+    /// One value a point.
+    pub values: Values,
+}
+
+/// Values in the smallest float type that holds the file's type exactly.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// From 8- and 16-bit integers and 32-bit floats.
+    F32(Vec<f32>),
+    /// From 32-bit integers and 64-bit floats.
+    F64(Vec<f64>),
+}
+
+/// How a file stores colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColorEncoding {
+    /// Floats, taken as linear, 1 at full intensity.
+    Linear,
+    /// Integers in sRGB, 255 at full intensity. Values beyond 0..=255 are clamped.
+    Srgb8,
+    /// 16-bit integers in sRGB, 65535 at full intensity.
+    Srgb16,
+}
+
+impl PointSet {
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there is no point.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// The attribute of this name, if the points have it.
+    pub fn attribute(&self, name: &str) -> Option<&Values> {
+        self.attributes.iter().find(|attribute| attribute.name == name).map(|found| &found.values)
+    }
+
+    /// Smallest and largest coordinate along each axis; `None` without points.
+    pub fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+        let (&first, rest) = self.positions.split_first()?;
+        Some(rest.iter().fold((first, first), |(min, max), p| {
+            let min = [min[0].min(p[0]), min[1].min(p[1]), min[2].min(p[2])];
+            let max = [max[0].max(p[0]), max[1].max(p[1]), max[2].max(p[2])];
+            (min, max)
+        }))
+    }
+}
+
+impl Values {
+    /// Number of values, one a point.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::F32(values) => values.len(),
+            Self::F64(values) => values.len(),
+        }
+    }
+
+    /// Whether there are no values.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The value of the point at `index`.
+    ///
+    /// # Panics
+    /// If there is no such point.
+    pub fn get(&self, index: usize) -> f64 {
+        match self {
+            Self::F32(values) => f64::from(values[index]),
+            Self::F64(values) => values[index],
+        }
+    }
+
+    /// All values, in the order of the points.
+    pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.len()).map(|index| self.get(index))
+    }
+}
+
+impl ColorEncoding {
+    /// The stored value 'at full intensity', which becomes 1.
+    fn full(self) -> f64 {
+        match self {
+            Self::Linear => 1.0,
+            Self::Srgb8 => 255.0,
+            Self::Srgb16 => 65535.0,
+        }
+    }
+
+    /// A stored value as a linear one.
+    pub fn decode(self, stored: f64) -> f32 {
+        match self {
+            Self::Linear => stored as f32,
+            Self::Srgb8 | Self::Srgb16 => {
+                linear_from_srgb((stored / self.full()).clamp(0.0, 1.0)) as f32
+            }
+        }
+    }
+
+    /// The stored value that [`decode`](Self::decode) makes `linear`: exactly, for integers within
+    /// their range.
+    pub fn encode(self, linear: f32) -> f64 {
+        match self {
+            Self::Linear => f64::from(linear),
+            Self::Srgb8 | Self::Srgb16 => {
+                (srgb_from_linear(f64::from(linear)) * self.full()).round()
+            }
+        }
+    }
+}
+
+/// The sRGB curve of IEC 61966-2-1, from the stored 0..=1 to linear light.
+fn linear_from_srgb(v: f64) -> f64 {
+    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+}
+
+/// The inverse of [`linear_from_srgb`].
+fn srgb_from_linear(x: f64) -> f64 {
+    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn srgb_meets_its_closed_forms() {
+        let decode = |stored| ColorEncoding::Srgb8.decode(stored);
+        assert_eq!(decode(0.0), 0.0);
+        assert_eq!(decode(255.0), 1.0);
+        // 10 / 255 = 0.0392 is the last byte of the linear part.
+        assert_eq!(decode(10.0), (10.0 / 255.0 / 12.92) as f32);
+        assert_eq!(decode(11.0), ((11.0f64 / 255.0 + 0.055) / 1.055).powf(2.4) as f32);
+        // 0.73536 is the stored value of 0.5: see the curve's inverse.
+        assert!((ColorEncoding::Srgb16.decode(0.735_357 * 65535.0) - 0.5).abs() < 1e-5);
+        assert_eq!(decode(300.0), 1.0);
+        assert_eq!(decode(-1.0), 0.0);
+    }
+
+    #[test]
+    fn every_stored_integer_comes_back() {
+        for (encoding, full) in [(ColorEncoding::Srgb8, 255), (ColorEncoding::Srgb16, 65535)] {
+            for stored in (0..=full).map(f64::from) {
+                assert_eq!(encoding.encode(encoding.decode(stored)), stored);
+            }
+        }
+    }
 }

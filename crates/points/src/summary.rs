@@ -1,0 +1,205 @@
+//! What `pointillist info` tells about a point file.
+
+use crate::set::PointSet;
+use serde_json::{Map, Value, json};
+use std::fmt;
+
+/// Counts, ranges and the box of a point set, in the file's own coordinates and units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointSummary {
+    /// The file format in words.
+    pub format: String,
+    /// Points that a render would use: those with a finite position, duplicates included.
+    pub points: u64,
+    /// Points that were dropped.
+    pub dropped: Dropped,
+    /// Smallest coordinate along each axis.
+    pub min: [f64; 3],
+    /// Largest coordinate along each axis.
+    pub max: [f64; 3],
+    /// Name and range of everything else a point has: normals as `nx`, `ny`, `nz`, colours as
+    /// `red`, `green`, `blue` in the file's units, then the attributes in the order of the file.
+    pub attributes: Vec<(String, Range)>,
+    /// Median distance to the nearest other point; 0 for duplicates, `None` for a single point.
+    pub spacing: Option<f64>,
+}
+
+/// How many points were dropped, and why.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Dropped {
+    /// For a coordinate that is infinite or not a number.
+    pub non_finite: u64,
+}
+
+/// Smallest and largest of some values, of those that are numbers; `None` if none is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range(pub Option<(f64, f64)>);
+
+impl PointSummary {
+    /// Summarises a point set. `spacing` is the median distance to the nearest other point, which
+    /// takes a search that is not done here.
+    pub fn new(set: &PointSet, spacing: Option<f64>) -> Self {
+        let (min, max) = set.bounds().unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
+        let mut attributes = Vec::new();
+        if let Some(normals) = &set.normals {
+            for (axis, name) in ["nx", "ny", "nz"].into_iter().enumerate() {
+                let values = normals.iter().map(|normal| f64::from(normal[axis]));
+                attributes.push((name.to_owned(), Range::of(values)));
+            }
+        }
+        if let (Some(colors), Some(encoding)) = (&set.colors, set.color_encoding) {
+            for (channel, name) in ["red", "green", "blue"].into_iter().enumerate() {
+                let linear = Range::of(colors.iter().map(|color| f64::from(color[channel])));
+                // Encoding the ends is enough: the curve rises.
+                let stored = linear
+                    .0
+                    .map(|(min, max)| (encoding.encode(min as f32), encoding.encode(max as f32)));
+                attributes.push((name.to_owned(), Range(stored)));
+            }
+        }
+        for attribute in &set.attributes {
+            attributes.push((attribute.name.clone(), Range::of(attribute.values.iter())));
+        }
+        Self {
+            format: set.format.clone(),
+            points: set.len() as u64,
+            dropped: Dropped { non_finite: set.non_finite },
+            min,
+            max,
+            attributes,
+            spacing,
+        }
+    }
+
+    /// The summary as `pointillist info --json` prints it. What JSON has no number for is `null`.
+    pub fn to_json(&self) -> Value {
+        let mut reasons = Map::new();
+        if self.dropped.non_finite > 0 {
+            reasons.insert("non-finite position".to_owned(), json!(self.dropped.non_finite));
+        }
+        let attributes: Map<String, Value> = self
+            .attributes
+            .iter()
+            .map(|(name, range)| {
+                let (min, max) = range.0.unzip();
+                (name.clone(), json!({ "min": min, "max": max }))
+            })
+            .collect();
+        json!({
+            "format": self.format,
+            "points": self.points,
+            "dropped": { "count": self.dropped.non_finite, "reasons": reasons },
+            "bounds": { "min": self.min, "max": self.max },
+            "attributes": attributes,
+            "spacing": self.spacing,
+        })
+    }
+}
+
+impl Range {
+    /// The range of some values. NaN is passed over.
+    pub fn of(values: impl Iterator<Item = f64>) -> Self {
+        Self(values.filter(|value| !value.is_nan()).fold(None, |range, value| match range {
+            None => Some((value, value)),
+            Some((min, max)) => Some((value.min(min), value.max(max))),
+        }))
+    }
+}
+
+impl fmt::Display for PointSummary {
+    /// As `pointillist info` prints it: one line a fact, without a newline at the end.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let corner = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
+        writeln!(f, "format   {}", self.format)?;
+        writeln!(f, "points   {}", self.points)?;
+        let dropped = self.dropped.non_finite;
+        if dropped > 0 {
+            writeln!(f, "dropped  {dropped} (position infinite or not a number)")?;
+        }
+        writeln!(f, "min      {}", corner(self.min))?;
+        writeln!(f, "max      {}", corner(self.max))?;
+        match self.spacing {
+            Some(spacing) => write!(f, "spacing  {spacing} (median to the nearest other point)")?,
+            None => write!(f, "spacing  none (a single point)")?,
+        }
+        if self.attributes.is_empty() {
+            return Ok(());
+        }
+        write!(f, "\nattributes")?;
+        let width = self.attributes.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+        for (name, range) in &self.attributes {
+            match range.0 {
+                Some((min, max)) => write!(f, "\n  {name:width$}  {min} .. {max}")?,
+                None => write!(f, "\n  {name:width$}  not a number")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::set::{Attribute, ColorEncoding, Values};
+
+    fn set() -> PointSet {
+        let encoding = ColorEncoding::Srgb8;
+        PointSet {
+            positions: vec![[1.0, -2.0, 0.1], [0.5, 4.0, 636_001.76]],
+            file_index: vec![0, 2],
+            colors: Some(vec![
+                [3.0, 20.0, 255.0].map(|stored| encoding.decode(stored)),
+                [17.0, 20.0, 0.0].map(|stored| encoding.decode(stored)),
+            ]),
+            color_encoding: Some(encoding),
+            normals: Some(vec![[0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
+            attributes: vec![
+                Attribute { name: "h".to_owned(), values: Values::F32(vec![f32::NAN, 2.5]) },
+                Attribute { name: "none".to_owned(), values: Values::F64(vec![f64::NAN; 2]) },
+            ],
+            non_finite: 1,
+            format: "PLY 1.0, ascii".to_owned(),
+        }
+    }
+
+    #[test]
+    fn json_has_what_was_promised() {
+        let json = PointSummary::new(&set(), Some(0.25)).to_json();
+        let expected = json!({
+            "format": "PLY 1.0, ascii",
+            "points": 2,
+            "dropped": { "count": 1, "reasons": { "non-finite position": 1 } },
+            "bounds": { "min": [0.5, -2.0, 0.1], "max": [1.0, 4.0, 636_001.76] },
+            "attributes": {
+                "nx": { "min": 0.0, "max": 0.0 },
+                "ny": { "min": -1.0, "max": 0.0 },
+                "nz": { "min": 0.0, "max": 1.0 },
+                "red": { "min": 3.0, "max": 17.0 },
+                "green": { "min": 20.0, "max": 20.0 },
+                "blue": { "min": 0.0, "max": 255.0 },
+                "h": { "min": 2.5, "max": 2.5 },
+                "none": { "min": null, "max": null },
+            },
+            "spacing": 0.25,
+        });
+        assert_eq!(json, expected);
+    }
+
+    #[test]
+    fn nothing_dropped_has_no_reasons() {
+        let set = PointSet { non_finite: 0, ..set() };
+        let json = PointSummary::new(&set, None).to_json();
+        assert_eq!(json["dropped"], json!({ "count": 0, "reasons": {} }));
+        assert_eq!(json["spacing"], Value::Null);
+    }
+
+    #[test]
+    fn text_names_every_attribute() {
+        let text = PointSummary::new(&set(), Some(0.25)).to_string();
+        for line in
+            ["points   2", "min      0.5 -2 0.1", "  red    3 .. 17", "  none   not a number"]
+        {
+            assert!(text.lines().any(|found| found == line), "no '{line}' in\n{text}");
+        }
+    }
+}
