@@ -1,9 +1,9 @@
 //! A film as OpenEXR: scan lines, ZIP in blocks of 16 lines, 32-bit float, linear Rec. 709.
 //!
 //! The crate `exr` keeps custom attributes in a hash map with a random seed, so the order in which
-//! it writes them changes from run to run. [`sort_header`] puts them in alphabetical order, which is
-//! also the order of the OpenEXR library. Blocks are compressed in parallel and written in the order
-//! of their lines. Both together make equal films equal files: `two_writes_are_equal_to_the_byte`.
+//! it writes them changes from run to run. [`sort_header`] puts them in alphabetical order, as the
+//! OpenEXR library does. Blocks are compressed in parallel and written in the order of their lines.
+//! Both together make equal films equal files: `two_writes_are_equal_to_the_byte`.
 
 use crate::error::FilmError;
 use crate::picture::{Film, Provenance, Window};
