@@ -84,9 +84,11 @@ pub fn with_engine<T>(
 
 impl Engine {
     fn open(args: &DeviceArgs) -> Result<Self, Failure> {
-        let choice = match args.device.as_deref() {
-            Some("reference") => return Ok(Self::Reference),
-            Some("reference-f64") => return Ok(Self::ReferenceF64),
+        let choice = match args.device.as_deref().map(str::trim) {
+            Some(name) if name.eq_ignore_ascii_case("reference") => return Ok(Self::Reference),
+            Some(name) if name.eq_ignore_ascii_case("reference-f64") => {
+                return Ok(Self::ReferenceF64);
+            }
             Some(name) => DeviceChoice::Named(name.to_owned()),
             None => DeviceChoice::Default,
         };

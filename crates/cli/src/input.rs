@@ -2,6 +2,7 @@
 
 use crate::args::{Overrides, UpAxis};
 use crate::errors::Failure;
+use crate::memory;
 use crate::progress::Progress;
 use plan::{Plan, PlanError, Window};
 use points::{PointSet, Watch};
@@ -117,15 +118,16 @@ impl Input {
         self.path.file_stem().unwrap_or(self.path.as_os_str()).to_string_lossy().into_owned()
     }
 
-    /// Fails where a crop does not lie inside the picture: before points are read.
-    pub fn check_crop(&self, crop: Option<Window>) -> Result<(), Failure> {
+    /// What of the picture is rendered. Fails where a crop does not lie inside the picture: before
+    /// points are read.
+    pub fn window(&self, crop: Option<Window>) -> Result<Window, Failure> {
         let image = self.scene.image.size;
-        let Some(crop) = crop else { return Ok(()) };
+        let crop = crop.unwrap_or(Window { origin: [0, 0], size: image });
         let inside = (0..2).all(|axis| {
             let end = crop.origin[axis].checked_add(crop.size[axis]);
             crop.size[axis] > 0 && end.is_some_and(|end| end <= image[axis])
         });
-        if inside { Ok(()) } else { Err(PlanError::Crop { crop, image }.into()) }
+        if inside { Ok(crop) } else { Err(PlanError::Crop { crop, image }.into()) }
     }
 
     /// Reads the points of every object, each file once, and warns of those that are of no use.
@@ -155,6 +157,7 @@ impl Input {
         crop: Option<Window>,
         progress: &Progress,
     ) -> Result<Plan, Failure> {
+        memory::require_points(sets.iter().map(|set| set.len() as u64).sum())?;
         progress.stage("sorting points", 1);
         let plan = Plan::new(&self.scene, sets, crop, self.up)?;
         progress.clear();

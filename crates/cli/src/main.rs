@@ -13,6 +13,7 @@ mod errors;
 mod files;
 mod input;
 mod interrupt;
+mod memory;
 mod progress;
 mod stats;
 

@@ -7,10 +7,10 @@ use crate::args::BenchArgs;
 use crate::console;
 use crate::engine::{Engine, with_engine};
 use crate::errors::Failure;
-use crate::files;
 use crate::input::{Input, SceneValues};
 use crate::progress::Progress;
 use crate::stats::{Measured, Row, pixel_hash};
+use crate::{files, memory};
 use serde::Serialize;
 use std::fmt::Write;
 use std::fs;
@@ -83,6 +83,7 @@ pub fn run(args: &BenchArgs) -> Result<(), Failure> {
 }
 
 fn measure(input: &Input, engine: &Engine, runs: u32, progress: &Progress) -> Result<Row, Failure> {
+    memory::require_picture(input.window(None)?, &[])?;
     let sets = input.read_points(progress)?;
     let dropped = sets.iter().map(|set| set.non_finite).sum();
     let plan = input.plan(&sets, None, progress)?;

@@ -6,7 +6,7 @@ use crate::errors::Failure;
 use crate::input::{Input, SceneValues};
 use crate::progress::Progress;
 use crate::stats::{Measured, Row};
-use crate::{files, interrupt};
+use crate::{files, interrupt, memory};
 use film::FileFormat;
 use plan::Plan;
 use points::Watch;
@@ -15,9 +15,11 @@ use std::time::{Duration, Instant};
 
 /// Renders. Whatever can be checked is checked before points are read.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
-    for output in &args.outputs {
-        FileFormat::from_path(output)?;
-    }
+    let formats: Vec<FileFormat> = args
+        .outputs
+        .iter()
+        .map(|output| FileFormat::from_path(output))
+        .collect::<Result<_, _>>()?;
     let outputs: Vec<&Path> =
         args.outputs.iter().chain(&args.stats).map(|path| path.as_path()).collect();
     for output in &outputs {
@@ -28,7 +30,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         values.add("image.samples", &samples.to_string(), &format!("--samples {samples}"));
     }
     let input = Input::load(&args.scene, &values, args.up)?;
-    input.check_crop(args.crop)?;
+    memory::require_picture(input.window(args.crop)?, &formats)?;
     files::check_distinct(&outputs, &input.files())?;
     let progress = Progress::new(&args.progress);
     with_engine(&args.device, |engine| render(args, &input, engine, &progress))

@@ -1,5 +1,6 @@
 //! The binary from outside: what it prints, writes and exits with. No Vulkan device is needed.
 #![forbid(unsafe_code)]
+#![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 mod inspect;
 mod render;

@@ -164,3 +164,19 @@ fn bench_times_frames_on_the_reference() {
     let markdown = std::fs::read_to_string(folder.path().join("b.md")).expect("a table");
     assert!(markdown.contains("| ball | 500 |"), "{markdown}");
 }
+
+/// 16384 x 16384 pixels need 13 GB; the limit on the process is 4 GB.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_picture_beyond_memory_is_4_with_a_way_out() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(200));
+    let render = format!(
+        "ulimit -v 4000000; exec '{}' render ball.ply -o a.png --device reference --size 16384x16384",
+        env!("CARGO_BIN_EXE_pointillist")
+    );
+    let mut shell = std::process::Command::new("sh");
+    let ran = Ran::of(shell.current_dir(folder.path()).args(["-c", &render]));
+    ran.fails_with(4, &["16384x16384", "--crop"]);
+    assert_eq!(folder.names(), ["ball.ply"]);
+}
