@@ -1,5 +1,5 @@
 //! Real scans: the same bits on device and CPU, and no holes in the paper's models.
-#![allow(clippy::expect_used, reason = "a test fails by panicking")]
+#![allow(clippy::expect_used, clippy::print_stdout, reason = "tests panic and print")]
 
 use harness::{Bench, assert_same_bits, pinholes, plan_of, render_twin, shared_data};
 use points::PointSet;

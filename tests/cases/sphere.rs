@@ -1,4 +1,5 @@
 //! Closed forms: the unit sphere, and a plane.
+#![allow(clippy::print_stdout, reason = "measured figures, for whoever asks with --nocapture")]
 
 use harness::{
     Bench, Rendered, fibonacci_sphere, grid_points, moved, pinholes, plan_of, render_twin, set_of,

@@ -106,6 +106,31 @@ fn degenerate_sets_are_the_same_to_the_bit() {
     }
 }
 
+/// Half of a file's points are no numbers: they are dropped and counted, the rest is the same to the
+/// bit, and indices are places in the file.
+#[test]
+fn a_set_half_of_nan_is_the_same_to_the_bit() {
+    let sphere = fibonacci_sphere(4_000);
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\n\
+         property float z\nend_header\n",
+        2 * sphere.len()
+    );
+    for [x, y, z] in &sphere {
+        text += &format!("{x} nan {z}\n{x} {y} {z}\n");
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("half.ply");
+    std::fs::write(&path, text).expect("a written file");
+    let set = points::read(&path, &mut |_, _| {}).expect("a readable file");
+    assert_eq!((set.len(), set.non_finite), (4_000, 4_000));
+    assert!(set.file_index.iter().all(|index| index % 2 == 1));
+    let plan = plan_of(&format!("{SMALL}\n{LIGHTS}"), &[set]);
+    let on_device = Bench::open().render(&plan);
+    assert_same_bits("half NaN", &on_device, &render_twin(&plan));
+    assert!(on_device.film.object.iter().filter(|&&object| object == 0.0).count() > 5_000);
+}
+
 #[test]
 fn several_objects_with_colors_and_transforms_are_the_same_to_the_bit() {
     let scene = format!(
@@ -167,6 +192,23 @@ fn a_cell_with_too_many_points_for_one_pass_is_finished_in_the_next() {
     assert!(one_cell.tests >= 150_000 * 24, "tests: {}", one_cell.tests);
     plan.grid_resolution = 0;
     assert_same_film("one cell", &one_cell.film, &render_twin(&plan).film);
+}
+
+/// A crop, whose pixels are other invocations of other workgroups, shows what the whole shows there;
+/// pictures larger than a tile come together without a seam.
+#[test]
+fn crops_and_tiles_show_the_same_pixels() {
+    let bench = Bench::open();
+    let text = format!("[image]\nsize = [1100, 1030]\n{LIGHTS}");
+    let mut plan = plan_of(&text, &[set_of(fibonacci_sphere(5_000))]);
+    let whole = bench.render(&plan).film;
+    assert_same_film("tiles", &whole, &render_twin(&plan).film);
+    plan.window = plan::Window { origin: [1000, 500], size: [77, 33] };
+    let crop = bench.render(&plan).film;
+    for (i, color) in crop.color.iter().enumerate() {
+        let at = (500 + i / 77) * 1100 + 1000 + i % 77;
+        assert_eq!((color, crop.depth[i]), (&whole.color[at], whole.depth[at]), "pixel {i}");
+    }
 }
 
 /// SwiftShader, for one, allows too few texels for most scenes.

@@ -37,23 +37,26 @@ fn smooth_step(from: f64, to: f64, value: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Height of the ground.
-pub fn height(x: f64, z: f64) -> f64 {
-    let distance = x.hypot(z);
-    let swell = waves(&SWELL, x, z);
-    let ring = smooth_step(5.0, 22.0, distance) * (1.0 - 0.7 * smooth_step(24.0, FAR, distance));
-    swell + ring * (1.9 + waves(&HILLS, x, z))
+/// How much of the ring of hills there is.
+fn ring(distance: f64) -> f64 {
+    smooth_step(5.0, 22.0, distance) * (1.0 - 0.7 * smooth_step(24.0, FAR, distance))
 }
 
-/// Colour of the ground, linear: by height, and bluer with the distance.
-fn color(y: f64, distance: f64) -> [f64; 3] {
-    let low = oklch(0.46, 0.085, 0.50);
-    let middle = oklch(0.66, 0.105, 0.35);
-    let high = oklch(0.85, 0.080, 0.24);
-    let band = (y + 0.22) / 0.44;
-    let near =
-        if band < 0.5 { mix(low, middle, 2.0 * band) } else { mix(middle, high, 2.0 * band - 1.0) };
-    mix(near, oklch(0.62, 0.075, 0.71), 0.92 * smooth_step(4.0, 20.0, distance))
+/// Height of the ground.
+pub fn height(x: f64, z: f64) -> f64 {
+    waves(&SWELL, x, z) + ring(x.hypot(z)) * (1.9 + waves(&HILLS, x, z))
+}
+
+/// Colour of the ground, linear: green in the hollows, straw on the crests, blue in the distance.
+fn color(x: f64, z: f64) -> [f64; 3] {
+    let distance = x.hypot(z);
+    let low = oklch(0.44, 0.085, 0.48);
+    let middle = oklch(0.62, 0.120, 0.355);
+    let high = oklch(0.86, 0.095, 0.25);
+    let level = waves(&SWELL, x, z) + 0.25 * ring(distance) * waves(&HILLS, x, z);
+    let band = (level + 0.20) / 0.21;
+    let near = mix(mix(low, middle, band), high, band - 1.0);
+    mix(near, oklch(0.60, 0.085, 0.72), 0.94 * smooth_step(4.0, 19.0, distance))
 }
 
 /// `count` points of the land, with their colours.
@@ -72,7 +75,7 @@ pub fn points(count: u32) -> Vec<(Vector, [f64; 3])> {
             let (sin, cos) = turn(f64::from(i) * GOLDEN_TURN).sin_cos();
             let [x, z] = [distance * cos, distance * sin];
             let y = height(x, z);
-            ([x, y, z], color(y, distance))
+            ([x, y, z], color(x, z))
         })
         .collect()
 }

@@ -17,23 +17,14 @@ pub struct Picture {
 
 impl Picture {
     pub(crate) fn new(plan: &Plan) -> Self {
-        let pixels = plan.window.pixels();
+        let window = film::Window {
+            x: plan.window.origin[0],
+            y: plan.window.origin[1],
+            width: plan.window.size[0],
+            height: plan.window.size[1],
+        };
         Self {
-            film: Film {
-                size: plan.image_size,
-                window: film::Window {
-                    x: plan.window.origin[0],
-                    y: plan.window.origin[1],
-                    width: plan.window.size[0],
-                    height: plan.window.size[1],
-                },
-                transparent: plan.transparent,
-                color: vec![[0.0; 4]; pixels],
-                depth: vec![f32::INFINITY; pixels],
-                position: vec![[0.0; 3]; pixels],
-                normal: vec![[0.0; 3]; pixels],
-                object: vec![-1.0; pixels],
-            },
+            film: Film::empty(plan.image_size, window, plan.transparent),
             origin: plan.cloud.origin,
             tests: 0,
             hits: 0,

@@ -165,13 +165,10 @@ fn world_bounds(objects: &[ObjectPoints<'_>]) -> Option<[[f64; 3]; 2]> {
 
 /// 21 bits an axis, interleaved, over the cube around the points.
 fn morton_keys(points: &[Point]) -> Vec<u64> {
-    let mut low = [f32::INFINITY; 3];
-    let mut extent = f32::MIN_POSITIVE;
-    for axis in 0..3 {
-        let all = || points.iter().map(|p| p.position[axis]);
-        low[axis] = all().fold(f32::INFINITY, f32::min);
-        extent = extent.max(all().fold(f32::NEG_INFINITY, f32::max) - low[axis]);
-    }
+    let along = |axis: usize| points.iter().map(move |p| p.position[axis]);
+    let low = [0, 1, 2].map(|axis| along(axis).fold(f32::INFINITY, f32::min));
+    let high = [0, 1, 2].map(|axis| along(axis).fold(f32::NEG_INFINITY, f32::max));
+    let extent = (0..3).map(|axis| high[axis] - low[axis]).fold(f32::MIN_POSITIVE, f32::max);
     let steps = f64::from((1u32 << 21) - 1);
     points
         .par_iter()

@@ -116,10 +116,11 @@ mod tests {
         for resolution in [0, 1, 7, 100] {
             let grid = plan(&balls, resolution);
             for (center, trust) in balls {
-                for axis in 0..3 {
+                let inside = |axis: usize| {
                     let end = grid.origin[axis] + grid.edge * grid.resolution[axis] as f32;
-                    assert!(grid.origin[axis] < center[axis] - trust && end > center[axis] + trust);
-                }
+                    grid.origin[axis] < center[axis] - trust && end > center[axis] + trust
+                };
+                assert!((0..3).all(inside), "{grid:?}");
             }
         }
         assert_eq!(plan(&balls, 7).resolution.iter().max(), Some(&7));

@@ -74,9 +74,10 @@ impl Real for f32 {
     fn floor(self) -> Self {
         self.floor()
     }
+    #[expect(clippy::excessive_precision, reason = "the kernel's digits")]
     fn exp_negative(self) -> Self {
         let clamped = Real::max(self, -80.0);
-        let n = (clamped * 1.442_695_04 + 0.5).floor();
+        let n = (clamped * std::f32::consts::LOG2_E + 0.5).floor();
         let r = (clamped - n * 0.693_359_375) + n * 2.121_944_4e-4;
         let mut p = 1.987_569_15e-4;
         p = p * r + 1.398_199_950_7e-3;

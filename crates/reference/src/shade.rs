@@ -5,8 +5,6 @@ use crate::polynomial::Polynomial;
 use crate::real::{Real, V3};
 use kernels::layout::{FilmPixel, LIGHT_POINT, Light, NONE, ObjectInfo, ShadeParams};
 
-const INVERSE_PI: f64 = 0.318_309_886;
-
 /// What shading reads besides the ray.
 #[derive(Debug, Clone, Copy)]
 pub struct Shading<'a> {
@@ -70,7 +68,7 @@ pub fn shade<R: Real>(
         .take(params.light_count as usize)
         .fold(V3::splat(R::of(0.0)), |sum, light| sum + irradiance(light, x, normal));
     let color = point_color(shading, &shading.objects[p.object as usize], ray.hit_slot);
-    let [r, g, b] = (color * light.times(R::of(INVERSE_PI))).to_f32();
+    let [r, g, b] = (color * light.times(R::of(std::f64::consts::FRAC_1_PI))).to_f32();
     let [px, py, pz] = x.to_f32();
     let [nx, ny, nz] = normal.to_f32();
     let depth = ray.hit_t * ray.direction.dot(V3::of_f32(params.forward));
