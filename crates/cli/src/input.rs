@@ -4,7 +4,7 @@ use crate::args::{Overrides, UpAxis};
 use crate::errors::Failure;
 use crate::memory;
 use crate::progress::Progress;
-use plan::{Plan, PlanError, Window};
+use plan::{Plan, Window};
 use points::{PointSet, Watch};
 use scene::{Scene, Up};
 use std::collections::HashMap;
@@ -121,13 +121,7 @@ impl Input {
     /// What of the picture is rendered. Fails where a crop does not lie inside the picture: before
     /// points are read.
     pub fn window(&self, crop: Option<Window>) -> Result<Window, Failure> {
-        let image = self.scene.image.size;
-        let crop = crop.unwrap_or(Window { origin: [0, 0], size: image });
-        let inside = (0..2).all(|axis| {
-            let end = crop.origin[axis].checked_add(crop.size[axis]);
-            crop.size[axis] > 0 && end.is_some_and(|end| end <= image[axis])
-        });
-        if inside { Ok(crop) } else { Err(PlanError::Crop { crop, image }.into()) }
+        Ok(plan::checked_crop(crop, self.scene.image.size)?)
     }
 
     /// Reads the points of every object, each file once, and warns of those that are of no use.

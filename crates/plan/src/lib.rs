@@ -220,7 +220,11 @@ impl Plan {
     }
 }
 
-fn checked_crop(crop: Option<Window>, image: [u32; 2]) -> Result<Window, PlanError> {
+/// What of an image of these columns and rows is rendered: `crop`, or all of it.
+///
+/// # Errors
+/// [`PlanError::Crop`] where the crop is empty or leaves the image.
+pub fn checked_crop(crop: Option<Window>, image: [u32; 2]) -> Result<Window, PlanError> {
     let crop = crop.unwrap_or(Window { origin: [0, 0], size: image });
     let inside = (0..2).all(|axis| {
         crop.size[axis] > 0
