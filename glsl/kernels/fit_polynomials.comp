@@ -14,7 +14,7 @@
 #include "layout.glsl"
 #include "math.glsl"
 #include "eigen.glsl"
-#include "least_squares.glsl"
+#include "fit.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
@@ -24,10 +24,6 @@ layout(std430, binding = FIT_POLYNOMIALS) writeonly buffer Polynomials { Polynom
 layout(std430, binding = FIT_OUTCOMES) writeonly buffer Outcomes { FitOutcome outcomes[]; };
 layout(push_constant) uniform Push { FitParams params; };
 
-#define MAX_SLOPE 1.0            // sqrt(E E + F F)
-#define MAX_OFFSET 0.3           // |D| / h
-#define MAX_CURVATURE 2.0        // |eigenvalue| of h M
-#define COLLINEAR 1e-6           // middle eigenvalue of the covariance over the largest
 #define SMALLEST_FEATURE 1e-15   // h under this: every neighbour lies on the point
 
 vec3 neighbor_offset(uint list, uint j, vec3 center) {
@@ -50,19 +46,6 @@ uint count_distinct(uint list, uint count, vec3 center) {
         ++j;
     }
     return distinct;
-}
-
-bool enough_points(uint kind, uint distinct) {
-    return distinct >= (kind == FIT_FULL ? 6u : (kind == FIT_INCOMPLETE ? 4u : 3u));
-}
-
-// Limits that stop spikes on scans; the coefficients are in units of h.
-bool within_limits(float c[6]) {
-    float mean = 0.5 * (c[0] + c[1]);
-    float half_difference = 0.5 * (c[0] - c[1]);
-    float spread = sqrt(half_difference * half_difference + 0.25 * c[2] * c[2]);
-    return abs(mean) + spread <= MAX_CURVATURE && abs(c[5]) <= MAX_OFFSET
-        && sqrt(c[3] * c[3] + c[4] * c[4]) <= MAX_SLOPE;
 }
 
 void main() {
@@ -116,30 +99,10 @@ void main() {
 
     uint distinct = count_distinct(list, count, center);
     bool spans_plane = values.y > COLLINEAR * values.z;
-    float c[6] = float[6](0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    uint kind = spread_out && spans_plane ? params.polynomial : FIT_NO_SURFACE;
-    bool found = false;
-    while (kind != FIT_NO_SURFACE && !found) {
-        float solution[6];
-        bool regular = solve(eq, kind, solution);
-        found = regular && enough_points(kind, distinct) && within_limits(solution);
-        for (int a = 0; a < UNKNOWNS; ++a) c[a] = found ? solution[a] : 0.0;
-        kind = found ? kind : kind - 1u;
-    }
-
-    float a = c[0] * inverse_h, b = c[1] * inverse_h, half_c = 0.5 * (c[2] * inverse_h);
-    vec3 m = (n - c[3] * u) - c[4] * v;
-    vec3 au = a * u + half_c * v; // M = u (A u + C/2 v)' + v (C/2 u + B v)'
-    vec3 bv = half_c * u + b * v;
-    float trust = found ? params.trust * h : 0.0;
-    Polynomial p;
-    p.center_trust = vec4(center, trust);
-    p.gradient_offset = vec4(m, c[5] * h);
-    p.curvature = vec4(u.x * au.x + v.x * bv.x, u.y * au.y + v.y * bv.y, u.z * au.z + v.z * bv.z,
-                       u.x * au.y + v.x * bv.y);
-    p.cross_terms = vec2(u.x * au.z + v.x * bv.z, u.y * au.z + v.y * bv.z);
-    p.object = params.object;
-    p.index = points[slot].index;
-    polynomials[slot] = p;
-    outcomes[slot] = FitOutcome(trust, kind);
+    float c[6];
+    uint kind = fit_coefficients(eq, spread_out && spans_plane ? params.polynomial : FIT_NO_SURFACE, distinct, c);
+    float trust = kind != FIT_NO_SURFACE ? params.trust * h : 0.0;
+    polynomials[slot] =
+        to_world(center, trust, h, inverse_h, n, u, v, c, params.object, points[slot].index);
+    outcomes[slot] = FitOutcome(trust, kind, h);
 }

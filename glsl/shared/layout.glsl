@@ -78,9 +78,10 @@ struct Polynomial {       // 64 bytes
     uint index;           // 60  place in its file
 };
 
-struct FitOutcome {      // 8 bytes
+struct FitOutcome {      // 12 bytes
     float trust;         // 0  b, or 0 where the point carries no surface
     uint kind;           // 4  FIT_*
+    float feature_size;  // 8  h
 };
 
 struct FitParams {       // 32 bytes

@@ -167,8 +167,10 @@ pub struct FitOutcome {
     pub trust: f32,
     /// One of `FIT_*`.
     pub kind: u32,
+    /// h.
+    pub feature_size: f32,
 }
-gpu_layout!(FitOutcome, 8, { trust: 0, kind: 4 });
+gpu_layout!(FitOutcome, 12, { trust: 0, kind: 4, feature_size: 8 });
 
 /// Push constants of `fit_polynomials`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

@@ -99,8 +99,10 @@ mod tests {
     fn plan(balls: &[([f32; 3], f32)], resolution: u32) -> GridInfo {
         let points: Vec<Point> =
             balls.iter().map(|&(position, _)| Point { position, index: 0 }).collect();
-        let outcomes: Vec<FitOutcome> =
-            balls.iter().map(|&(_, trust)| FitOutcome { trust, kind: 3 }).collect();
+        let outcomes: Vec<FitOutcome> = balls
+            .iter()
+            .map(|&(_, trust)| FitOutcome { trust, kind: 3, feature_size: trust })
+            .collect();
         plan_grid(&points, &outcomes, resolution)
     }
 

@@ -1,6 +1,7 @@
 //! Twin of `fit_polynomials`: the local polynomial of each point (method, section 1).
 
 use crate::eigen::eigen_symmetric;
+use crate::fit::{COLLINEAR, Frame, fit_coefficients};
 use crate::least_squares::NormalEquations;
 use crate::polynomial::Polynomial;
 use crate::real::{Real, V3};
@@ -8,10 +9,6 @@ use kernels::layout::{
     FIT_FULL, FIT_INCOMPLETE, FIT_NO_SURFACE, FIT_PLANE, FitParams, NONE, Point,
 };
 
-const MAX_SLOPE: f64 = 1.0;
-const MAX_OFFSET: f64 = 0.3;
-const MAX_CURVATURE: f64 = 2.0;
-const COLLINEAR: f64 = 1e-6;
 const SMALLEST_FEATURE: f64 = 1e-15;
 
 /// Offsets of a point's neighbours from it, nearest first.
@@ -39,26 +36,7 @@ impl Neighborhood<'_> {
     }
 }
 
-fn enough_points(kind: u32, distinct: u32) -> bool {
-    let needed = match kind {
-        FIT_FULL => 6,
-        FIT_INCOMPLETE => 4,
-        _ => 3,
-    };
-    distinct >= needed
-}
-
-/// Limits that stop spikes on scans; coefficients A B C E F D in units of h.
-fn within_limits<R: Real>(c: &[R; 6]) -> bool {
-    let mean = R::of(0.5) * (c[0] + c[1]);
-    let half_difference = R::of(0.5) * (c[0] - c[1]);
-    let spread = (half_difference * half_difference + R::of(0.25) * c[2] * c[2]).sqrt();
-    mean.abs() + spread <= R::of(MAX_CURVATURE)
-        && c[5].abs() <= R::of(MAX_OFFSET)
-        && (c[3] * c[3] + c[4] * c[4]).sqrt() <= R::of(MAX_SLOPE)
-}
-
-/// The polynomial of one point and one of `FIT_*`. `list` holds its neighbours' slots, nearest
+/// The polynomial of one point, one of `FIT_*`, and h. `list` holds its neighbours' slots, nearest
 /// first, `NONE` behind the last.
 #[must_use]
 pub fn fit_polynomial<R: Real>(
@@ -66,7 +44,7 @@ pub fn fit_polynomial<R: Real>(
     slot: usize,
     list: &[u32],
     params: &FitParams,
-) -> (Polynomial<R>, u32) {
+) -> (Polynomial<R>, u32, R) {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let count = list.iter().position(|&neighbor| neighbor == NONE).unwrap_or(list.len());
     let center = points[slot].position;
@@ -111,34 +89,12 @@ pub fn fit_polynomial<R: Real>(
 
     let distinct = around.count_distinct();
     let spans_plane = eigen.values.y() > R::of(COLLINEAR) * eigen.values.z();
-    let kinds: &[u32] = match (spread_out && spans_plane, params.polynomial) {
-        (false, _) => &[],
-        (true, FIT_FULL) => &[FIT_FULL, FIT_INCOMPLETE, FIT_PLANE],
-        (true, _) => &[FIT_INCOMPLETE, FIT_PLANE],
-    };
-    let (kind, c) = kinds
-        .iter()
-        .find_map(|&kind| {
-            let (regular, solution) = equations.solve(kind);
-            (regular && enough_points(kind, distinct) && within_limits(&solution))
-                .then_some((kind, solution))
-        })
-        .unwrap_or((FIT_NO_SURFACE, [zero; 6]));
-
-    let (a, b) = (c[0] * inverse_h, c[1] * inverse_h);
-    let half_c = R::of(0.5) * (c[2] * inverse_h);
-    let au = u.times(a) + v.times(half_c);
-    let bv = u.times(half_c) + v.times(b);
-    let curvature = |i: usize, j: usize| u.0[i] * au.0[j] + v.0[i] * bv.0[j];
-    let polynomial = Polynomial {
-        center: V3::of_f32(center),
-        trust: if kind == FIT_NO_SURFACE { zero } else { R::of_f32(params.trust) * h },
-        gradient: (n - u.times(c[3])) - v.times(c[4]),
-        offset: c[5] * h,
-        diagonal: V3([curvature(0, 0), curvature(1, 1), curvature(2, 2)]),
-        off: V3([curvature(0, 1), curvature(0, 2), curvature(1, 2)]),
-        object: params.object,
-        index: points[slot].index,
-    };
-    (polynomial, kind)
+    let first = if spread_out && spans_plane { params.polynomial } else { FIT_NO_SURFACE };
+    let (kind, coefficients) = fit_coefficients(&equations, first, distinct);
+    let frame = Frame { n, u, v };
+    let mut polynomial = frame.to_world(V3::of_f32(center), h, inverse_h, &coefficients);
+    polynomial.trust = if kind == FIT_NO_SURFACE { zero } else { R::of_f32(params.trust) * h };
+    polynomial.object = params.object;
+    polynomial.index = points[slot].index;
+    (polynomial, kind, h)
 }

@@ -6,12 +6,14 @@
 
 pub mod camera_rays;
 pub mod eigen;
+pub mod fit;
 pub mod fit_polynomials;
 pub mod grid;
 pub mod grid_build;
 pub mod grid_trace;
 pub mod least_squares;
 pub mod polynomial;
+pub mod projection;
 pub mod real;
 pub mod shade;
 
@@ -46,7 +48,7 @@ impl<R: Real> Reference<R> {
     #[must_use]
     pub fn new(plan: &Plan, watch: &dyn Watch) -> Option<Self> {
         let cloud = &plan.cloud;
-        let mut fitted: Vec<(Polynomial<R>, u32)> = Vec::with_capacity(cloud.points.len());
+        let mut fitted: Vec<(Polynomial<R>, u32, R)> = Vec::with_capacity(cloud.points.len());
         watch.stage("fitting surfaces", cloud.points.len() as u64);
         for (object, params) in cloud.objects.iter().zip(&plan.fits) {
             let range = object.range();
@@ -71,7 +73,11 @@ impl<R: Real> Reference<R> {
         }
         let outcomes: Vec<FitOutcome> = fitted
             .iter()
-            .map(|&(polynomial, kind)| FitOutcome { trust: polynomial.trust.to_f32(), kind })
+            .map(|&(polynomial, kind, h)| FitOutcome {
+                trust: polynomial.trust.to_f32(),
+                kind,
+                feature_size: h.to_f32(),
+            })
             .collect();
         let polynomials: Vec<Polynomial<R>> = fitted.into_iter().map(|fit| fit.0).collect();
         watch.stage("building the grid", 1);

@@ -118,7 +118,7 @@ fn fit_all(
             watch.done(done);
         }
     }
-    let mut read = vec![FitOutcome { trust: 0.0, kind: 0 }; count];
+    let mut read = vec![FitOutcome { trust: 0.0, kind: 0, feature_size: 0.0 }; count];
     outcomes.read(0, &mut read)?;
     Ok(read)
 }
