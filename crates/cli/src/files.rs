@@ -5,7 +5,7 @@ use crate::errors::{Exit, Failure};
 use crate::interrupt;
 use serde::Serialize;
 use std::fs;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 /// Fails where `path` cannot become a file: a missing folder, one that may not be written to, a
@@ -61,11 +61,7 @@ pub fn check_distinct(outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure
 
 /// Makes `path` a file of this text, whole or not at all.
 pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    interrupt::writing(|| {
-        store(path, text.as_bytes()).map_err(|error| {
-            write_failure(path, &error, "cannot write the file; check the disk and its folder")
-        })
-    })
+    interrupt::writing(|| Ok(film::store(path, text.as_bytes())?))
 }
 
 /// Makes `path` a file of one JSON value.
@@ -73,28 +69,6 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| Failure::exhausted(format!("{}: {error}", path.display())))?;
     write(path, &format!("{text}\n"))
-}
-
-fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    // A link stays a link.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-    if fs::metadata(&target).is_ok_and(|found| !found.is_file()) {
-        return fs::OpenOptions::new().write(true).open(&target)?.write_all(bytes);
-    }
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".pointillist-");
-    #[cfg(unix)]
-    let allowed = {
-        use std::os::unix::fs::PermissionsExt;
-        // What any program asks for; the system takes away what the user's umask forbids.
-        fs::Permissions::from_mode(0o666)
-    };
-    #[cfg(unix)]
-    builder.permissions(allowed);
-    let mut file = builder.tempfile_in(folder_of(&target))?;
-    file.write_all(bytes)?;
-    file.persist(&target)?;
-    Ok(())
 }
 
 fn write_failure(path: &Path, error: &io::Error, what: &str) -> Failure {

@@ -3,7 +3,7 @@
 //! A [`Film`] is what a render ends with. [`write`] turns it into an EXR with every channel, or
 //! into a PNG or JPEG of the colours alone. The same film gives the same bytes, whatever the number
 //! of threads and whenever it is written (`two_writes_are_equal_to_the_byte`), and a file is either
-//! written whole or not at all: see the module `store`.
+//! written whole or not at all: see [`store()`].
 #![forbid(unsafe_code)]
 
 mod eight_bit;
@@ -18,6 +18,7 @@ pub use error::FilmError;
 pub use exr_read::{ExrPicture, read_exr};
 pub use picture::{Film, Provenance, Window};
 pub use srgb::srgb_byte;
+pub use store::store;
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -71,7 +72,7 @@ pub fn write(film: &Film, provenance: &Provenance, path: &Path) -> Result<(), Fi
         FileFormat::Png => eight_bit::png(film, path)?,
         FileFormat::Jpeg => eight_bit::jpeg(film, path)?,
     };
-    store::store(path, &bytes)
+    store(path, &bytes)
 }
 
 #[cfg(test)]

@@ -13,23 +13,31 @@ use std::path::{Path, PathBuf};
 /// A chain of links longer than this is taken for a loop, as Linux does.
 const MAX_LINKS: usize = 40;
 
-/// Makes `path` a file of these bytes.
-pub(crate) fn store(path: &Path, bytes: &[u8]) -> Result<(), FilmError> {
+/// Makes `path` a file of these bytes, whole or not at all. An existing file is replaced; through a
+/// link, the file that the link names.
+///
+/// # Errors
+/// A folder that is missing or cannot be written to, a full disk ([`FilmError::is_out_of_space`]).
+/// Nothing is left behind then, and a file that was there before is as it was.
+pub fn store(path: &Path, bytes: &[u8]) -> Result<(), FilmError> {
     let write_error = |source| FilmError::Write { path: path.into(), source };
-    let target = follow_links(path).map_err(write_error)?;
-    match fs::metadata(&target) {
+    match fs::metadata(path) {
         Ok(found) if found.is_dir() => Err(FilmError::IsFolder { path: path.into() }),
+        // By the path as given: /dev/stdout leads to names such as 'pipe:[1]' that nobody can open.
         Ok(found) if !found.is_file() => OpenOptions::new()
             .write(true)
-            .open(&target)
+            .open(path)
             .and_then(|mut device| device.write_all(bytes))
             .map_err(write_error),
         Ok(found) if found.permissions().readonly() => {
             Err(FilmError::WriteProtected { path: path.into() })
         }
         // A file that is replaced keeps its permissions.
-        Ok(found) => replace(&target, bytes, Some(found.permissions())).map_err(write_error),
+        Ok(found) => follow_links(path)
+            .and_then(|target| replace(&target, bytes, Some(found.permissions())))
+            .map_err(write_error),
         Err(_) => {
+            let target = follow_links(path).map_err(write_error)?;
             let folder = folder_of(&target);
             if folder.is_dir() {
                 replace(&target, bytes, None).map_err(write_error)
@@ -42,18 +50,14 @@ pub(crate) fn store(path: &Path, bytes: &[u8]) -> Result<(), FilmError> {
 
 /// Writes aside, then renames. On failure the temporary file is removed by its destructor.
 fn replace(target: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> io::Result<()> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".pointillist-");
-    #[cfg(unix)]
-    let allowed = {
-        use std::os::unix::fs::PermissionsExt;
-        // What any program asks for; the system takes away what the user's umask forbids.
-        fs::Permissions::from_mode(0o666)
-    };
-    #[cfg(unix)]
-    builder.permissions(allowed);
-    let mut file = builder.tempfile_in(folder_of(target))?;
-    file.write_all(bytes)?;
+    // Opened here rather than by `tempfile`, whose errors name the temporary file; `as_file_mut` for
+    // the same reason. New files have the permissions that the user's umask leaves of any file's.
+    let mut options = OpenOptions::new();
+    options.write(true).create_new(true);
+    let mut file = tempfile::Builder::new()
+        .prefix(".pointillist-")
+        .make_in(folder_of(target), |path| options.open(path))?;
+    file.as_file_mut().write_all(bytes)?;
     if let Some(permissions) = permissions {
         file.as_file().set_permissions(permissions)?;
     }

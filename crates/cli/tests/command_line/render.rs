@@ -180,3 +180,36 @@ fn a_picture_beyond_memory_is_4_with_a_way_out() {
     ran.fails_with(4, &["16384x16384", "--crop"]);
     assert_eq!(folder.names(), ["ball.ply"]);
 }
+
+/// What is aside until it is whole is nobody's business: a limit on the size of files stands for a
+/// full disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_that_cannot_be_finished_is_named_as_typed_and_leaves_nothing() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(200));
+    std::os::unix::fs::symlink("/dev/null", folder.path().join("no.png")).expect("a link");
+    for outputs in ["-o a.exr", "-o no.png --stats a.json"] {
+        let render = format!(
+            "trap '' XFSZ; ulimit -f 0; \
+             exec '{}' render ball.ply {outputs} --device reference --size 64x48",
+            env!("CARGO_BIN_EXE_pointillist")
+        );
+        let mut shell = std::process::Command::new("sh");
+        let ran = Ran::of(shell.current_dir(folder.path()).args(["-c", &render]));
+        let ran = ran.fails_with(2, &["error: a.", "cannot write the file"]);
+        assert!(!ran.stderr.contains(".pointillist-"), "{}", ran.stderr);
+    }
+    assert_eq!(folder.names(), ["ball.ply", "no.png"]);
+}
+
+/// /dev/stdout is a link to a pipe, which can only be written to directly.
+#[cfg(target_os = "linux")]
+#[test]
+fn statistics_can_go_to_stdout_and_are_alone_there() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(200));
+    let ran = render(&folder, &["ball.ply", "-o", "a.png", "--stats", "/dev/stdout"]).succeeds();
+    let row: Value = serde_json::from_str(&ran.stdout).expect("JSON alone");
+    assert_eq!(row["points"], 200);
+}
