@@ -93,7 +93,7 @@ fn channels(film: &Film) -> AnyChannels<FlatSamples> {
     fn plane<const N: usize>(pixels: &[[f32; N]], index: usize) -> Vec<f32> {
         pixels.iter().map(|pixel| pixel[index]).collect()
     }
-    let list = [
+    let mut list = vec![
         channel("R", plane(&film.color, 0)),
         channel("G", plane(&film.color, 1)),
         channel("B", plane(&film.color, 2)),
@@ -107,7 +107,13 @@ fn channels(film: &Film) -> AnyChannels<FlatSamples> {
         channel("N.Z", plane(&film.normal, 2)),
         channel("object", film.object.clone()),
     ];
-    AnyChannels::sort(list.into_iter().collect())
+    for (name, samples) in &film.extra {
+        let extra = channel(name, samples.clone());
+        let free = !name.is_empty() && list.iter().all(|channel| channel.name != extra.name);
+        assert!(free, "film: the channel name '{name}' is not free");
+        list.push(extra);
+    }
+    AnyChannels::sort(list.into())
 }
 
 /// The origin and the settings under the names they have in the file. Fails with what is wrong.

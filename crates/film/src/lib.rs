@@ -58,8 +58,8 @@ impl FileFormat {
 /// link names.
 ///
 /// # Panics
-/// If the lengths of the film's planes are not those of its window, or if the window leaves the
-/// image: see [`Film`].
+/// If the lengths of the film's planes are not those of its window, if the window leaves the image,
+/// or if two planes have one name: see [`Film`].
 ///
 /// # Errors
 /// An unknown extension, a folder that is missing or cannot be written to, a full disk

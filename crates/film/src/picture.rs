@@ -21,6 +21,9 @@ pub struct Film {
     pub normal: Vec<[f32; 3]>,
     /// Index of the first surface's object, −1 where there is none.
     pub object: Vec<f32>,
+    /// Further planes by the names that their channels have in an EXR. Names are distinct, not
+    /// empty, and none of `R G B A Z P.X P.Y P.Z N.X N.Y N.Z object`. Other formats leave them out.
+    pub extra: Vec<(String, Vec<f32>)>,
 }
 
 /// A rectangle of pixels inside an image.
@@ -78,6 +81,7 @@ impl Film {
             position: vec![[0.0; 3]; pixels],
             normal: vec![[0.0; 3]; pixels],
             object: vec![-1.0; pixels],
+            extra: Vec::new(),
         }
     }
 
@@ -94,13 +98,15 @@ impl Film {
             self.size
         );
         let pixels = self.window.pixels();
-        for (plane, length) in [
+        let planes = [
             ("color", self.color.len()),
             ("depth", self.depth.len()),
             ("position", self.position.len()),
             ("normal", self.normal.len()),
             ("object", self.object.len()),
-        ] {
+        ];
+        let extra = self.extra.iter().map(|(name, plane)| (name.as_str(), plane.len()));
+        for (plane, length) in planes.into_iter().chain(extra) {
             assert_eq!(length, pixels, "film: pixels of plane '{plane}' against the window's");
         }
     }

@@ -104,6 +104,50 @@ fn exr_gives_back_every_channel_and_header_of_a_crop() {
     assert_eq!(origin, provenance.origin);
 }
 
+#[test]
+fn exr_gives_back_extra_channels_beside_the_others() {
+    let folder = folder();
+    let path = folder.path().join("a.exr");
+    let plain = film();
+    let mut film = plain.clone();
+    for (factor, name) in [(-1.0, "tests"), (0.5, "Above.all"), (1e9, "fit")] {
+        let plane = (0..film.window.pixels()).map(|i| i as f32 * factor).collect();
+        film.extra.push((name.to_owned(), plane));
+    }
+    write(&film, &provenance(), &path).unwrap();
+    let picture = read_exr(&path).unwrap();
+    assert_eq!(picture.channels.len(), 15);
+    for (name, plane) in &film.extra {
+        assert_eq!(bits(&picture.channels[name]), bits(plane), "channel {name}");
+    }
+    write(&plain, &provenance(), &path).unwrap();
+    for (name, plane) in &read_exr(&path).unwrap().channels {
+        assert_eq!(bits(&picture.channels[name]), bits(plane), "channel {name}");
+    }
+}
+
+#[test]
+fn pictures_of_eight_bits_leave_extra_channels_out() {
+    let folder = folder();
+    let mut film = film();
+    let written = |film: &Film, name: &str| {
+        let path = folder.path().join(name);
+        write(film, &provenance(), &path).unwrap();
+        fs::read(path).unwrap()
+    };
+    let plain = ["a.png", "a.jpg"].map(|name| written(&film, name));
+    film.extra.push(("tests".to_owned(), vec![7.0; film.window.pixels()]));
+    assert!(plain == ["b.png", "b.jpg"].map(|name| written(&film, name)));
+}
+
+#[test]
+#[should_panic(expected = "'P.X' is not free")]
+fn two_channels_of_one_name_are_the_callers_mistake() {
+    let mut film = film();
+    film.extra.push(("P.X".to_owned(), vec![0.0; film.window.pixels()]));
+    let _ = write(&film, &provenance(), Path::new("a.exr"));
+}
+
 /// The OpenEXR library's own tool prints matrices row by row, and lists attributes and channels.
 #[test]
 fn exrheader_prints_what_was_written() {
