@@ -239,7 +239,13 @@ pub(crate) static RENDER: Table = Table {
             Value("0"),
             "Cells along the grid's longest axis. 0 chooses from the points.",
         ),
-        announced("primary", "How primary rays find their first hit."),
+        key(
+            "primary",
+            Kind::Choice(&["grid", "discs", "auto"]),
+            Value("\"auto\""),
+            "How camera rays find their first hit: cell after cell of the grid, or each tile of \
+             pixels among the points whose discs cover it. Changes no pixel.",
+        ),
     ],
 };
 

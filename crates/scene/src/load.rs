@@ -6,7 +6,7 @@ use crate::keys::{self, SCENE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
     Albedo, Background, Camera, FeatureSize, Fresnel, ImageSettings, Light, Material, Object,
-    Polynomial, RayLoop, RenderSettings, Scene, SceneError, Surface, Transform, Up,
+    Polynomial, Primary, RayLoop, RenderSettings, Scene, SceneError, Surface, Transform, Up,
 };
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -213,6 +213,11 @@ impl RenderSettings {
             },
             seed: table.count("seed"),
             grid_resolution: table.count("grid_resolution"),
+            primary: match table.text("primary").as_str() {
+                "grid" => Primary::Grid,
+                "discs" => Primary::Discs,
+                _ => Primary::Auto,
+            },
         }
     }
 }

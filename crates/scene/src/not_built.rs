@@ -40,7 +40,6 @@ pub(crate) const NOT_BUILT: &[NotBuilt] = &[
     value("image.samples", When::Above(1), "use 1"),
     value("render.fresnel", When::Is(&["sample"]), "use \"transmit\""),
     value("render.loop", When::Is(&["queue"]), "use \"images\" or \"auto\""),
-    key("render.primary"),
     key("background.environment"),
     key("lights.angle"),
     key("lights.radius"),

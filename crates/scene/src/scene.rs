@@ -61,6 +61,8 @@ pub struct RenderSettings {
     pub seed: u32,
     /// Cells along the grid's longest axis, 1 to 1024; 0 is chosen from the points.
     pub grid_resolution: u32,
+    /// How camera rays find their first hit. Changes no pixel.
+    pub primary: Primary,
 }
 
 /// What glass does with a ray that it both reflects and refracts.
@@ -80,6 +82,17 @@ pub enum RayLoop {
     /// Live rays compacted, in buffers.
     Queue,
     /// Whichever the device runs faster.
+    Auto,
+}
+
+/// How camera rays find their first hit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Primary {
+    /// Cell after cell of the grid.
+    Grid,
+    /// Among the points whose discs cover the tile of pixels.
+    Discs,
+    /// Whichever is expected to be faster.
     Auto,
 }
 

@@ -25,6 +25,7 @@ cells_per_pass = 4
 loop = "images"
 seed = 4294967295
 grid_resolution = 96
+primary = "discs"
 
 [background]
 color = [0.1, 0.2, 1e-7]
@@ -112,6 +113,7 @@ fn every_built_key_is_read() {
         ray_loop: RayLoop::Images,
         seed: u32::MAX,
         grid_resolution: 96,
+        primary: Primary::Discs,
     };
     assert_eq!(scene.render, render);
     assert_eq!(scene.background, Background { color: [0.1, 0.2, 1e-7] });
@@ -149,6 +151,7 @@ fn what_is_left_out_is_the_contracts_default() {
     assert_eq!((scene.render.max_bounces, scene.render.fresnel), (8, Fresnel::Transmit));
     assert_eq!((scene.render.cells_per_pass, scene.render.ray_loop), (0, RayLoop::Auto));
     assert_eq!((scene.render.seed, scene.render.grid_resolution), (0, 0));
+    assert_eq!(scene.render.primary, Primary::Auto);
     assert_eq!((scene.background.color, scene.lights.len()), ([0.0; 3], 0));
     let object = &scene.objects[0];
     assert_eq!((object.name.as_str(), object.transform), ("a", Transform::IDENTITY));
@@ -243,7 +246,6 @@ fn what_is_not_built_says_so_and_is_not_ignored() {
         ("image.samples=4", "image.samples"),
         ("render.fresnel=sample", "render.fresnel"),
         ("render.loop=queue", "render.loop"),
-        ("render.primary=true", "render.primary"),
         ("background.environment=sky.exr", "background.environment"),
         ("camera.aperture=0.1", "camera.aperture"),
         ("camera.focus=3", "camera.focus"),
@@ -290,7 +292,7 @@ fn not_built_list_names_keys_that_exist() {
 #[test]
 fn unknown_keys_name_the_place_and_the_nearest_key() {
     let found = error_where("neighbors = 20", "neighbours = 20");
-    let expected = "scenes/s.toml:42:1: objects[0].surface.neighbours: \
+    let expected = "scenes/s.toml:43:1: objects[0].surface.neighbours: \
                     unknown key; did you mean 'neighbors'?";
     assert_eq!(found, expected);
     for (set, name) in [
@@ -317,7 +319,7 @@ fn unknown_keys_far_from_any_list_the_known_and_name_another_tables() {
 #[test]
 fn error_says_where_what_expected_and_what_to_do() {
     let error = error_where("trust = 0.75", "  trust =   1.7 # b/h");
-    let expected = "scenes/s.toml:45:13: objects[0].surface.trust: found 1.7, \
+    let expected = "scenes/s.toml:46:13: objects[0].surface.trust: found 1.7, \
                     expected a number from 0.5 to 1; lower it or leave it out (default 0.6)";
     assert_eq!(error, expected);
 }
@@ -548,6 +550,7 @@ fn settings_parse_to_the_same_scene_and_the_same_bytes() {
     let settings = scene.settings_toml();
     let again = read(&settings).unwrap();
     (scene.render.cells_per_pass, scene.render.ray_loop) = (0, RayLoop::Auto);
+    scene.render.primary = Primary::Auto;
     assert_eq!(again, scene);
     assert_eq!(again.settings_toml(), settings);
     let small = read(SMALL).unwrap();
@@ -571,7 +574,8 @@ fn settings_state_every_built_key() {
     let settings = read(FULL).unwrap().settings_toml();
     for (name, path) in keys {
         let stated = settings.lines().any(|line| line.starts_with(&format!("{name} = ")));
-        let unseen = ["render.cells_per_pass", "render.loop"].contains(&path.as_str());
+        let unseen =
+            ["render.cells_per_pass", "render.loop", "render.primary"].contains(&path.as_str());
         assert_eq!(stated, !unseen, "{path}");
     }
 }
