@@ -5,6 +5,7 @@ use harness::{
     Bench, Rendered, assert_same_bits, assert_same_film, fibonacci_sphere, grid_points, plan_of,
     random, render_twin, set_of, wavy_sheet,
 };
+use plan::Diagnostic;
 use points::PointSet;
 use render::Records;
 
@@ -22,7 +23,8 @@ color = [0.1, 0.2, 0.3]
 ";
 
 fn check(name: &str, settings: &str, positions: Vec<[f64; 3]>) -> Rendered {
-    let plan = plan_of(&format!("{settings}\n{LIGHTS}"), &[set_of(positions)]);
+    let mut plan = plan_of(&format!("{settings}\n{LIGHTS}"), &[set_of(positions)]);
+    plan.diagnostics = Diagnostic::ALL.to_vec();
     let on_device = Bench::open().render(&plan);
     assert_same_bits(name, &on_device, &render_twin(&plan));
     on_device
@@ -150,7 +152,8 @@ points = \"c.ply\"
     let colors = positions.iter().map(|p| p.map(|x| 0.5 + 0.5 * x as f32)).collect();
     let coloured = PointSet { colors: Some(colors), ..set_of(positions) };
     let sets = [coloured, set_of(wavy_sheet(3_000)), set_of(fibonacci_sphere(2))];
-    let plan = plan_of(&scene, &sets);
+    let mut plan = plan_of(&scene, &sets);
+    plan.diagnostics = Diagnostic::ALL.to_vec();
     let on_device = Bench::open().render(&plan);
     assert_same_bits("objects", &on_device, &render_twin(&plan));
     for object in [0.0, 1.0] {

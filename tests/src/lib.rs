@@ -145,15 +145,21 @@ pub fn assert_same_bits(name: &str, a: &Rendered, b: &Rendered) {
 /// Fails unless both films are the same to the bit.
 pub fn assert_same_film(name: &str, a: &Film, b: &Film) {
     assert_eq!((a.size, a.window), (b.size, b.window), "{name}: size");
-    let planes = |film: &Film| -> Vec<(&'static str, Vec<u8>, usize)> {
-        vec![
+    fn planes(film: &Film) -> Vec<(&str, Vec<u8>, usize)> {
+        let mut planes = vec![
             ("object", bytemuck::cast_slice(&film.object).to_vec(), 4),
             ("Z", bytemuck::cast_slice(&film.depth).to_vec(), 4),
             ("P", bytemuck::cast_slice(&film.position).to_vec(), 12),
             ("N", bytemuck::cast_slice(&film.normal).to_vec(), 12),
             ("RGBA", bytemuck::cast_slice(&film.color).to_vec(), 16),
-        ]
-    };
+        ];
+        let extra = film.extra.iter();
+        planes.extend(
+            extra.map(|(name, plane)| (name.as_str(), bytemuck::cast_slice(plane).to_vec(), 4)),
+        );
+        planes
+    }
+    assert_eq!(a.extra.len(), b.extra.len(), "{name}: extra channels");
     for ((plane, left, size), (_, right, _)) in planes(a).into_iter().zip(planes(b)) {
         let differing: Vec<usize> = left
             .chunks(size)

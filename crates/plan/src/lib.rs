@@ -6,9 +6,11 @@
 #![forbid(unsafe_code)]
 
 mod camera;
+mod diagnostic;
 mod picture;
 
 pub use camera::View;
+pub use diagnostic::Diagnostic;
 pub use picture::Picture;
 
 use kernels::layout::{
@@ -68,6 +70,8 @@ pub struct Plan {
     pub window: Window,
     /// Names of the objects, for messages.
     pub names: Vec<String>,
+    /// Diagnostics that the film is to have, each at most once. None at first.
+    pub diagnostics: Vec<Diagnostic>,
     transparent: bool,
     provenance: film::Provenance,
 }
@@ -168,6 +172,7 @@ impl Plan {
             image_size,
             window,
             names: scene.objects.iter().map(|object| object.name.clone()).collect(),
+            diagnostics: Vec::new(),
             transparent: scene.image.transparent,
             provenance: film::Provenance {
                 world_to_camera: view.world_to_camera,

@@ -1,8 +1,9 @@
 //! From the pixels that kernels wrote to the film that files are made of.
 
+use crate::diagnostic::Fitted;
 use crate::{Plan, Window};
 use film::Film;
-use kernels::layout::FilmPixel;
+use kernels::layout::{FilmPixel, FitOutcome};
 
 /// A picture that is being filled, tile by tile, and what its rays did.
 #[derive(Debug)]
@@ -23,17 +24,27 @@ impl Picture {
             width: plan.window.size[0],
             height: plan.window.size[1],
         };
-        Self {
-            film: Film::empty(plan.image_size, window, plan.transparent),
-            origin: plan.cloud.origin,
-            tests: 0,
-            hits: 0,
-        }
+        let mut film = Film::empty(plan.image_size, window, plan.transparent);
+        film.extra = plan
+            .diagnostics
+            .iter()
+            .map(|diagnostic| (diagnostic.name().to_owned(), vec![0.0; window.pixels()]))
+            .collect();
+        Self { film, origin: plan.cloud.origin, tests: 0, hits: 0 }
     }
 
-    /// Puts the pixels of one tile, row by row, where they belong.
-    pub fn put(&mut self, tile: &Window, pixels: &[FilmPixel]) {
+    /// Puts the pixels of one tile, row by row, where they belong. `plan` is the picture's own, and
+    /// `outcomes` says how its fits ended, by slot.
+    pub fn put(
+        &mut self,
+        plan: &Plan,
+        outcomes: &[FitOutcome],
+        tile: &Window,
+        pixels: &[FilmPixel],
+    ) {
         assert_eq!(pixels.len(), tile.pixels(), "one pixel for each of the tile");
+        assert_eq!(outcomes.len(), plan.cloud.points.len(), "one outcome a point");
+        let fitted = Fitted { points: &plan.cloud.points, outcomes };
         let film = &mut self.film;
         let (x0, y0) = (tile.origin[0] - film.window.x, tile.origin[1] - film.window.y);
         for (row, pixels) in (y0..).zip(pixels.chunks(tile.size[0] as usize)) {
@@ -46,6 +57,9 @@ impl Picture {
                 film.depth[at] = depth;
                 film.normal[at] = [nx, ny, nz];
                 film.object[at] = object;
+                for (diagnostic, (_, plane)) in plan.diagnostics.iter().zip(&mut film.extra) {
+                    plane[at] = diagnostic.value(pixel, fitted);
+                }
                 if object >= 0.0 {
                     self.hits += 1;
                     let local = [x, y, z];

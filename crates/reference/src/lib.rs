@@ -103,7 +103,7 @@ impl<R: Real> Reference<R> {
                     origin: [tile.origin[0], tile.origin[1] + first],
                     size: [tile.size[0], (ROWS as u32).min(tile.size[1] - first)],
                 };
-                picture.put(&rows, &self.trace(plan, &rows));
+                picture.put(plan, &self.outcomes, &rows, &self.trace(plan, &rows));
                 done += rows.pixels() as u64;
                 watch.done(done);
             }

@@ -131,7 +131,7 @@ impl Renderer {
             stats.camera_rays += tile.pixels() as u64;
             let pixels = &mut pixels[..tile.pixels()];
             self.film.read(0, pixels)?;
-            picture.put(&tile, pixels);
+            picture.put(plan, &self.surfaces.outcomes, &tile, pixels);
             watch.done(stats.camera_rays);
         }
         Ok((picture, stats))
