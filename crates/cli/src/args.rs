@@ -1,6 +1,8 @@
 //! What may be typed. Values are checked for their form here, for their range by the scene.
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use plan::Diagnostic;
 use std::path::PathBuf;
 
 /// The whole command line.
@@ -54,6 +56,9 @@ pub struct RenderArgs {
     /// Render only a part of the picture
     #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop)]
     pub crop: Option<plan::Window>,
+    /// Diagnostic channels to add to EXR files, with commas between; may be given several times
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = diagnostic_parser())]
+    pub channels: Vec<Diagnostic>,
     /// Which axis of a point file points upwards [default: y]
     #[arg(long, value_name = "AXIS")]
     pub up: Option<UpAxis>,
@@ -171,6 +176,14 @@ pub struct Size(pub u32, pub u32);
 /// What was typed, or clap's answer to it.
 pub fn parse() -> Result<Arguments, clap::Error> {
     Arguments::try_parse()
+}
+
+/// Names what there is in the help, and the nearest in an error.
+fn diagnostic_parser() -> impl TypedValueParser<Value = Diagnostic> {
+    let named =
+        |diagnostic: Diagnostic| PossibleValue::new(diagnostic.name()).help(diagnostic.meaning());
+    PossibleValuesParser::new(Diagnostic::ALL.map(named))
+        .try_map(|name| Diagnostic::named(&name).ok_or("no diagnostic channel"))
 }
 
 fn parse_size(text: &str) -> Result<Size, String> {

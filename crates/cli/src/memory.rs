@@ -9,18 +9,21 @@ use film::FileFormat;
 use plan::Window;
 use std::fs;
 
-/// Twelve planes of f32: the film.
+/// Twelve planes of f32: the film. While an EXR is encoded, there are two of each plane.
 const FILM_PIXEL: u64 = 48;
-/// The same planes again while an EXR is encoded.
-const EXR_PIXEL: u64 = 48;
 /// World position, centred point, sort key, order, polynomial, cell lists.
 const POINT: u64 = 160;
 
-/// Fails where a picture of this window does not fit.
-pub fn require_picture(window: Window, outputs: &[FileFormat]) -> Result<(), Failure> {
-    let exr = if outputs.contains(&FileFormat::Exr) { EXR_PIXEL } else { 0 };
+/// Fails where a picture of this window with so many diagnostics does not fit.
+pub fn require_picture(
+    window: Window,
+    outputs: &[FileFormat],
+    diagnostics: usize,
+) -> Result<(), Failure> {
+    let film = FILM_PIXEL + size_of::<f32>() as u64 * diagnostics as u64;
+    let copies = if outputs.contains(&FileFormat::Exr) { 2 } else { 1 };
     let [width, height] = window.size;
-    let bytes = (FILM_PIXEL + exr) * u64::from(width) * u64::from(height);
+    let bytes = copies * film * u64::from(width) * u64::from(height);
     require(
         bytes,
         &format!("a picture of {width}x{height} pixels"),
@@ -70,6 +73,6 @@ mod tests {
         assert!(failure.lines[0].contains("thin the point sets"), "{failure:?}");
         assert!(require_points(1000).is_ok());
         let window = Window { origin: [0, 0], size: [64, 64] };
-        assert!(require_picture(window, &[FileFormat::Exr]).is_ok());
+        assert!(require_picture(window, &[FileFormat::Exr], 6).is_ok());
     }
 }

@@ -83,7 +83,7 @@ pub fn run(args: &BenchArgs) -> Result<(), Failure> {
 }
 
 fn measure(input: &Input, engine: &Engine, runs: u32, progress: &Progress) -> Result<Row, Failure> {
-    memory::require_picture(input.window(None)?, &[])?;
+    memory::require_picture(input.window(None)?, &[], 0)?;
     let sets = input.read_points(progress)?;
     let dropped = sets.iter().map(|set| set.non_finite).sum();
     let plan = input.plan(&sets, None, progress)?;

@@ -8,7 +8,7 @@ use crate::progress::Progress;
 use crate::stats::{Measured, Row};
 use crate::{files, interrupt, memory};
 use film::FileFormat;
-use plan::Plan;
+use plan::{Diagnostic, Plan};
 use points::Watch;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -30,22 +30,37 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         values.add("image.samples", &samples.to_string(), &format!("--samples {samples}"));
     }
     let input = Input::load(&args.scene, &values, args.up)?;
-    memory::require_picture(input.window(args.crop)?, &formats)?;
+    let diagnostics = diagnostics(args, &formats);
+    memory::require_picture(input.window(args.crop)?, &formats, diagnostics.len())?;
     files::check_distinct(&outputs, &input.files())?;
     let progress = Progress::new(&args.progress);
-    with_engine(&args.device, |engine| render(args, &input, engine, &progress))
+    if diagnostics.is_empty() && !args.channels.is_empty() {
+        progress.note(
+            "warning: --channels is ignored, since only EXR files hold diagnostic channels; add \
+             -o FILE.exr",
+        );
+    }
+    with_engine(&args.device, |engine| render(args, &input, diagnostics, engine, &progress))
+}
+
+/// The diagnostics that were asked for, each once, where a file can hold them.
+fn diagnostics(args: &RenderArgs, formats: &[FileFormat]) -> Vec<Diagnostic> {
+    let held = formats.contains(&FileFormat::Exr);
+    Diagnostic::ALL.into_iter().filter(|asked| held && args.channels.contains(asked)).collect()
 }
 
 fn render(
     args: &RenderArgs,
     input: &Input,
+    diagnostics: Vec<Diagnostic>,
     engine: &Engine,
     progress: &Progress,
 ) -> Result<(), Failure> {
     let started = Instant::now();
     let sets = input.read_points(progress)?;
     let dropped = sets.iter().map(|set| set.non_finite).sum();
-    let plan = input.plan(&sets, args.crop, progress)?;
+    let mut plan = input.plan(&sets, args.crop, progress)?;
+    plan.diagnostics = diagnostics;
     drop(sets);
     let read = started.elapsed();
     let mut built = engine.build(&plan, progress)?;

@@ -72,12 +72,17 @@ fn the_same_render_gives_the_same_bytes_wherever_it_is_started() {
 fn a_crop_is_a_part_of_the_whole() {
     let folder = Folder::new();
     folder.write("ball.ply", &sphere(500));
-    render(&folder, &["ball.ply", "-o", "whole.exr"]).succeeds();
-    render(&folder, &["ball.ply", "-o", "part.exr", "--crop", "20,10,30,25"]).succeeds();
+    let channels = ["--channels", "point,tests,cells,iterations,trust,fit"];
+    let into = |output: &str, crop: &[&str]| {
+        render(&folder, &[&["ball.ply", "-o", output][..], &channels, crop].concat()).succeeds();
+    };
+    into("whole.exr", &[]);
+    into("part.exr", &["--crop", "20,10,30,25"]);
     let read = |name: &str| film::read_exr(&folder.path().join(name)).expect("an EXR");
     let (whole, part) = (read("whole.exr"), read("part.exr"));
     assert_eq!((part.data_origin, part.data_size), ([20, 10], [30, 25]));
     assert_eq!(part.display_size, [64, 48]);
+    assert_eq!(part.channels.len(), 12 + 6);
     for (name, values) in &part.channels {
         let all = &whole.channels[name];
         for (i, value) in values.iter().enumerate() {
@@ -85,6 +90,51 @@ fn a_crop_is_a_part_of_the_whole() {
             assert_eq!(value.to_bits(), all[y * 64 + x].to_bits(), "{name} at {x}, {y}");
         }
     }
+}
+
+#[test]
+fn channels_add_diagnostics_and_change_nothing_else() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(500));
+    render(&folder, &["ball.ply", "-o", "plain.exr"]).succeeds();
+    let repeated = ["--channels", "trust,tests", "--channels", "fit", "--channels", "tests"];
+    let outputs = ["ball.ply", "-o", "a.exr", "-o", "a.png", "--stats", "a.json"];
+    let ran = render(&folder, &[&outputs[..], &repeated].concat()).succeeds();
+    assert_eq!(ran.stderr, "");
+    let read = |name: &str| film::read_exr(&folder.path().join(name)).expect("an EXR").channels;
+    let (plain, mut with) = (read("plain.exr"), read("a.exr"));
+    let [fits, tests, fractions] =
+        ["fit", "tests", "trust"].map(|name| with.remove(name).expect("a channel"));
+    assert!(plain == with, "the other channels are those of a render without");
+
+    for ((object, fit), fraction) in plain["object"].iter().zip(fits).zip(fractions) {
+        let hit = *object >= 0.0;
+        assert_eq!(fit, if hit { 3.0 } else { -1.0 });
+        assert!(if hit { (0.0..=1.0).contains(&fraction) } else { fraction == -1.0 });
+    }
+    let row = json(&folder.path().join("a.json"));
+    let rays = row["rays"]["camera"].as_f64().expect("a count");
+    let counted = row["tests_per_ray"].as_f64().expect("a number") * rays;
+    let sum: f64 = tests.into_iter().map(f64::from).sum();
+    assert!((sum - counted).abs() < 1e-6 * counted, "{sum} against {counted}");
+}
+
+/// Nobody is told twice, and a picture is the same to the byte.
+#[test]
+fn channels_without_an_exr_are_a_warning() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(500));
+    let arguments = ["render", "ball.ply", "--device", "reference", "--size", "64x48", "-o"];
+    let render = |output: &str, channels: &[&str]| {
+        run_in(folder.path(), &[&arguments[..], &[output], channels].concat()).succeeds()
+    };
+    let plain = render("a.png", &[]);
+    assert!(!plain.stderr.contains("warning"), "{}", plain.stderr);
+    let warned = render("b.png", &["--channels", "point,fit"]);
+    assert_eq!(warned.stderr.matches("warning: --channels is ignored").count(), 1);
+    assert!(warned.stderr.contains(".exr"), "{}", warned.stderr);
+    let read = |name: &str| std::fs::read(folder.path().join(name)).expect("a picture");
+    assert!(read("a.png") == read("b.png"));
 }
 
 #[test]

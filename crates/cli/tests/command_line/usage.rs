@@ -89,6 +89,25 @@ fn options_that_set_scene_values_are_named_as_typed() {
 }
 
 #[test]
+fn channels_are_named_in_the_help_and_where_one_is_unknown() {
+    const NAMES: [&str; 6] = ["point", "tests", "cells", "iterations", "trust", "fit"];
+    let folder = Folder::new();
+    folder.write("a.ply", &sphere(10));
+    let render =
+        |list: &str| run_in(folder.path(), &["render", "a.ply", "-o", "a.exr", "--channels", list]);
+    render("list").fails_with(2, &NAMES);
+    render("point,tets").fails_with(2, &["'tets'", "similar", "'tests'"]);
+    for wrong in ["", "point,", "object", "Z", "POINT"] {
+        render(wrong).fails_with(2, &["--channels <LIST>"]).fails_with(2, &NAMES);
+    }
+    assert_eq!(folder.names(), ["a.ply"]);
+    let help = run_in(folder.path(), &["render", "--help"]).succeeds().stdout;
+    for name in NAMES {
+        assert!(help.contains(&format!("- {name}")), "'{name}' is not in: {help}");
+    }
+}
+
+#[test]
 fn inputs_at_fault_are_2_and_named() {
     let folder = Folder::new();
     folder.write("empty.ply", "");
