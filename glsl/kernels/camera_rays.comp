@@ -25,5 +25,5 @@ void main() {
     float y = (params.half_height - center.y) * params.scale;
     vec3 direction = normalize3((params.forward + x * params.right) + y * params.up);
     uint cell = enter_grid(grid, params.eye, direction);
-    store_ray(ivec2(pixel), Ray(params.eye, NO_HIT, direction, 0u, cell, 0u, 0u, NONE, vec4(0.0)));
+    store_ray(ivec2(pixel), Ray(params.eye, NO_HIT, direction, 0u, cell, 0u, 0u, NONE, vec3(0.0), 0.0));
 }

@@ -23,7 +23,7 @@ void main() {
     if (ordinal >= params.point_count) return;
     vec4 ball = polynomials[order[ordinal]].center_trust;
     uvec3 low, high;
-    cells_around(grid, ball.xyz, ball.w * BALL_MARGIN, low, high);
+    cells_around(grid, ball.xyz, ball.w * params.ball_scale, low, high);
     uvec3 extent = high - low + 1u;
     offsets[ordinal] = ball.w > 0.0 ? extent.x * extent.y * extent.z : 0u;
 }

@@ -37,7 +37,7 @@ void main() {
     }
     uint slot = order[low_ordinal];
     vec4 ball = polynomials[slot].center_trust;
-    float radius = ball.w * BALL_MARGIN;
+    float radius = ball.w * params.ball_scale;
     uvec3 low, high;
     cells_around(grid, ball.xyz, radius, low, high);
     uvec3 extent = high - low + 1u;
@@ -45,6 +45,7 @@ void main() {
     uint row = nth / extent.x;
     uvec3 cell = low + uvec3(nth % extent.x, row % extent.y, row / extent.y);
     uint cell_count = grid.resolution.x * grid.resolution.y * grid.resolution.z;
-    keys[pair] = ball_meets_cell(grid, cell, ball.xyz, radius) ? cell_id(grid, cell) : cell_count;
+    bool listed = radius == 0.0 || ball_meets_cell(grid, cell, ball.xyz, radius);
+    keys[pair] = listed ? cell_id(grid, cell) : cell_count;
     slots[pair] = slot;
 }

@@ -66,7 +66,8 @@ void main() {
             Polynomial p = polynomial_of(slot);
             float t = intersect(o, d, p);
             bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);
-            bool better = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);
+            bool nearer = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);
+            bool better = nearer && t > ray.after;
             ray.hit_t = better ? t : ray.hit_t;
             ray.hit_slot = better ? slot : ray.hit_slot;
             hit_object = better ? p.object : hit_object;

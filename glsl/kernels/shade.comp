@@ -1,6 +1,7 @@
 // shade: Lambert's law at the hit of each ray, the background where there is none (method, section 4).
 //
 // reads   the ray state, polynomials
+//         hits             accepted, or none
 //         objects          one an object of the scene
 //         colors           three floats a point of each object that has colours, by slot
 //         lights
@@ -12,12 +13,12 @@
 #define STATE_READS
 #include "layout.glsl"
 #include "math.glsl"
-#include "polynomial.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = TILE_GROUP) in;
 layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
+layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
 layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = SHADE_COLORS) readonly buffer Colors { float colors[]; };
 layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
@@ -50,20 +51,18 @@ void main() {
     if (any(greaterThanEqual(pixel, params.tile_size))) return;
     Ray ray = load_ray(ivec2(pixel));
     uint at = pixel.y * params.tile_size.x + pixel.x;
-    uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, 0u);
+    Hit hit = hits[at];
+    uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, hit.status >> HIT_TOTAL_SHIFT);
     if (ray.hit_slot == NONE) {
         vec3 behind = params.transparent != 0u ? vec3(0.0) : params.background;
-        film[at] = FilmPixel(vec4(ray.color.rgb + behind, 0.0), vec4(0.0, 0.0, 0.0, INFINITE_DEPTH),
+        film[at] = FilmPixel(vec4(ray.color + behind, 0.0), vec4(0.0, 0.0, 0.0, INFINITE_DEPTH),
                              vec4(0.0, 0.0, 0.0, -1.0), counts);
         return;
     }
-    Polynomial p = polynomials[ray.hit_slot];
-    vec3 y, normal;
-    surface_at(ray.origin, ray.direction, ray.hit_t, p, y, normal);
-    vec3 x = p.center_trust.xyz + y;
+    uint index = polynomials[ray.hit_slot].object;
     vec3 light = vec3(0.0);
-    for (uint i = 0u; i < params.light_count; ++i) light += irradiance(lights[i], x, normal);
-    vec3 radiance = ray.color.rgb + point_color(objects[p.object], ray.hit_slot) * (light * INVERSE_PI);
-    float depth = ray.hit_t * dot3(ray.direction, params.forward);
-    film[at] = FilmPixel(vec4(radiance, 1.0), vec4(x, depth), vec4(normal, float(p.object)), counts);
+    for (uint i = 0u; i < params.light_count; ++i) light += irradiance(lights[i], hit.position, hit.normal);
+    vec3 radiance = ray.color + point_color(objects[index], ray.hit_slot) * (light * INVERSE_PI);
+    float depth = hit.t * dot3(ray.direction, params.forward);
+    film[at] = FilmPixel(vec4(radiance, 1.0), vec4(hit.position, depth), vec4(hit.normal, float(index)), counts);
 }

@@ -9,7 +9,6 @@
 #include "layout.glsl"
 #include "math.glsl"
 
-#define BALL_MARGIN 1.0001 // of the trust radius, so that rounding loses no cell that a hit lies in
 #define PARALLEL 1e-20     // a direction's component under this never crosses a face
 
 uint cell_id(GridInfo grid, uvec3 cell) {

@@ -40,7 +40,12 @@
 #define SORT_KEYS_OUT 3
 #define SORT_SLOTS_OUT 4
 
-// camera_rays, grid_trace, shade: the ray state, four images, and four more to write
+// cell_offsets
+#define OFFSETS_INFO 0
+#define OFFSETS_KEYS 1
+#define OFFSETS_OUT 2
+
+// the kernels that run over pixels: the ray state, four images, and four more to write
 #define STATE_IN 0   // then 1, 2, 3
 #define STATE_OUT 4  // then 5, 6, 7
 #define TRACE_INFO 8
@@ -52,6 +57,18 @@
 #define SHADE_COLORS 14
 #define SHADE_LIGHTS 15
 #define SHADE_FILM 16
+#define TRACE_HITS 17
+#define REFINE_OFFSETS 18
+#define REFINE_SLOTS 19
+#define REFINE_OUTCOMES 20
+
+// What has become of a pixel's hit: the low byte of Hit.status.
+#define HIT_NONE 0
+#define HIT_ACCEPTED 1
+#define HIT_PENDING 2
+#define HIT_REJECTED 3
+#define HIT_STATUS_BITS 8 // the next 8 bits count the iterations since the stored hit
+#define HIT_TOTAL_SHIFT 16 // the bits from here on count all iterations of the ray
 
 // How a point's fit ended.
 #define FIT_NO_SURFACE 0
@@ -102,9 +119,10 @@ struct GridInfo {        // 32 bytes
     float inverse_edge;  // 28
 };
 
-struct GridParams {      // 8 bytes
+struct GridParams {      // 12 bytes
     uint point_count;    // 0
     uint pair_count;     // 4
+    float ball_scale;    // 8  radius listed over trust radius; 0: each point in its own cell alone
 };
 
 struct ScanParams {      // 8 bytes
@@ -149,9 +167,9 @@ struct ObjectInfo {      // 32 bytes
     vec3 albedo;         //  0
     uint first_color;    // 12  in colors, or NONE: albedo counts
     uint first_slot;     // 16
-    uint pad0;           // 20
-    uint pad1;           // 24
-    uint pad2;           // 28
+    uint polynomial;     // 20  FIT_FULL or FIT_INCOMPLETE: what refinement fits first
+    uint max_iterations; // 24  of the refinement; 0: hits are taken as they are
+    float tolerance;     // 28  of the refinement, over h
 };
 
 struct Light {           // 32 bytes
@@ -161,10 +179,17 @@ struct Light {           // 32 bytes
     uint pad;            // 28
 };
 
+struct Hit {             // 32 bytes
+    vec3 position;       //  0  centred scene space
+    float t;             // 12
+    vec3 normal;         // 16  unit, facing the ray's origin
+    uint status;         // 28  HIT_*, and counts of iterations
+};
+
 struct FilmPixel {       // 64 bytes
     vec4 color;          //  0  radiance and coverage
     vec4 position_depth; // 16  centred scene space; distance along the viewing axis
     vec4 normal_object;  // 32  facing the viewer; object, or -1
-    uvec4 counts;        // 48  tests, cells, slot of the hit or NONE, 0
+    uvec4 counts;        // 48  tests, cells, slot of the hit or NONE, iterations
 };
 #endif

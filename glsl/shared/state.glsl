@@ -16,7 +16,8 @@ struct Ray {
     uint cursor;     // how many of that cell's points it has tested
     uint tests;      // points tested so far
     uint hit_slot;   // the point hit, or NONE
-    vec4 color;      // accumulated
+    vec3 color;      // accumulated
+    float after;     // hits up to this distance do not count: they were refined away
 };
 
 #ifdef STATE_READS
@@ -32,7 +33,7 @@ Ray load_ray(ivec2 pixel) {
     uvec4 color = imageLoad(color_in, pixel);
     return Ray(uintBitsToFloat(position.xyz), uintBitsToFloat(position.w),
                uintBitsToFloat(direction.xyz), direction.w,
-               cell.x, cell.y, cell.z, cell.w, uintBitsToFloat(color));
+               cell.x, cell.y, cell.z, cell.w, uintBitsToFloat(color.xyz), uintBitsToFloat(color.w));
 }
 #endif
 
@@ -46,7 +47,7 @@ void store_ray(ivec2 pixel, Ray ray) {
     imageStore(position_out, pixel, uvec4(floatBitsToUint(ray.origin), floatBitsToUint(ray.hit_t)));
     imageStore(direction_out, pixel, uvec4(floatBitsToUint(ray.direction), ray.cells));
     imageStore(cell_out, pixel, uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot));
-    imageStore(color_out, pixel, floatBitsToUint(ray.color));
+    imageStore(color_out, pixel, uvec4(floatBitsToUint(ray.color), floatBitsToUint(ray.after)));
 }
 #endif
 #endif

@@ -90,6 +90,12 @@ constants! {
     SORT_KEYS_OUT = 3;
     /// Binding of the sort: what travelled with them.
     SORT_SLOTS_OUT = 4;
+    /// Binding of `cell_offsets`: [`GridInfo`].
+    OFFSETS_INFO = 0;
+    /// Binding of `cell_offsets`: cells, ascending.
+    OFFSETS_KEYS = 1;
+    /// Binding of `cell_offsets`: first entry of each cell.
+    OFFSETS_OUT = 2;
     /// First of the four bindings of the ray state read.
     STATE_IN = 0;
     /// First of the four bindings of the ray state written.
@@ -112,6 +118,27 @@ constants! {
     SHADE_LIGHTS = 15;
     /// Binding of `shade`: [`FilmPixel`]s.
     SHADE_FILM = 16;
+    /// Binding of the kernels that deal with hits: [`Hit`]s.
+    TRACE_HITS = 17;
+    /// Binding of `refine`: first entry of each cell among the points.
+    REFINE_OFFSETS = 18;
+    /// Binding of `refine`: points, cell after cell.
+    REFINE_SLOTS = 19;
+    /// Binding of `refine`: [`FitOutcome`]s.
+    REFINE_OUTCOMES = 20;
+    /// A pixel that hit nothing.
+    HIT_NONE = 0;
+    /// A hit that stands.
+    HIT_ACCEPTED = 1;
+    /// A hit whose refinement is under way.
+    HIT_PENDING = 2;
+    /// A hit whose refinement left the trust region.
+    HIT_REJECTED = 3;
+    /// Low bits of `Hit.status` that say what has become of it; the next 8 bits count the iterations
+    /// since the stored hit.
+    HIT_STATUS_BITS = 8;
+    /// The bits of `Hit.status` from here on count all iterations of the ray.
+    HIT_TOTAL_SHIFT = 16;
     /// A fit that found no surface.
     FIT_NO_SURFACE = 0;
     /// A fit that fell back to a plane.
@@ -229,8 +256,10 @@ pub struct GridParams {
     pub point_count: u32,
     /// Pairs of a cell and a point near it.
     pub pair_count: u32,
+    /// Radius listed over trust radius; 0: each point in its own cell alone.
+    pub ball_scale: f32,
 }
-gpu_layout!(GridParams, 8, { point_count: 0, pair_count: 4 });
+gpu_layout!(GridParams, 12, { point_count: 0, pair_count: 4, ball_scale: 8 });
 
 /// Push constants of the scan.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -328,15 +357,15 @@ pub struct ObjectInfo {
     pub first_color: u32,
     /// First slot of the object.
     pub first_slot: u32,
-    /// Unused.
-    pub pad0: u32,
-    /// Unused.
-    pub pad1: u32,
-    /// Unused.
-    pub pad2: u32,
+    /// `FIT_FULL` or `FIT_INCOMPLETE`: what refinement fits first.
+    pub polynomial: u32,
+    /// Of the refinement; 0: hits are taken as they are.
+    pub max_iterations: u32,
+    /// Of the refinement, over h.
+    pub tolerance: f32,
 }
 gpu_layout!(ObjectInfo, 32, {
-    albedo: 0, first_color: 12, first_slot: 16, pad0: 20, pad1: 24, pad2: 28,
+    albedo: 0, first_color: 12, first_slot: 16, polynomial: 20, max_iterations: 24, tolerance: 28,
 });
 
 /// One light.
@@ -354,6 +383,21 @@ pub struct Light {
 }
 gpu_layout!(Light, 32, { vector: 0, kind: 12, strength: 16, pad: 28 });
 
+/// Where a pixel's ray met a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Hit {
+    /// Centred scene space.
+    pub position: [f32; 3],
+    /// Distance along the ray.
+    pub t: f32,
+    /// Unit normal facing the ray's origin.
+    pub normal: [f32; 3],
+    /// One of `HIT_*`, and counts of iterations.
+    pub status: u32,
+}
+gpu_layout!(Hit, 32, { position: 0, t: 12, normal: 16, status: 28 });
+
 /// What one pixel saw.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -364,7 +408,7 @@ pub struct FilmPixel {
     pub position_depth: [f32; 4],
     /// Unit normal facing the viewer; index of the object, or −1.
     pub normal_object: [f32; 4],
-    /// Points tested, cells crossed, slot of the hit or `NONE`, 0.
+    /// Points tested, cells crossed, slot of the hit or `NONE`, iterations of its refinement.
     pub counts: [u32; 4],
 }
 gpu_layout!(FilmPixel, 64, { color: 0, position_depth: 16, normal_object: 32, counts: 48 });
@@ -384,5 +428,6 @@ pub const STRUCTS: &[StructLayout] = &[
     ShadeParams::LAYOUT,
     ObjectInfo::LAYOUT,
     Light::LAYOUT,
+    Hit::LAYOUT,
     FilmPixel::LAYOUT,
 ];

@@ -26,6 +26,8 @@ macro_rules! modules {
 modules! {
     /// The ray through each pixel's centre.
     camera_rays,
+    /// Where each cell's entries begin.
+    cell_offsets,
     /// The local polynomial of each point.
     fit_polynomials,
     /// Cells around each trust ball.
@@ -38,6 +40,10 @@ modules! {
     grid_trace,
     /// The same, reading polynomials through a uniform texel buffer.
     grid_trace_texels,
+    /// One iteration of each pending hit towards the point set surface.
+    refine,
+    /// Sends rays whose hit was refined away on to the next.
+    resume,
     /// Prefix sums, second half.
     scan_apply,
     /// Prefix sums, first half.
@@ -48,6 +54,8 @@ modules! {
     sort_count,
     /// Stable sort by one digit, second half.
     sort_scatter,
+    /// Where each ray met the polynomial it hit.
+    surface_hit,
 }
 
 /// Modules made of another kernel's source with a macro defined: name, kernel, macro.

@@ -60,7 +60,7 @@ impl Diagnostic {
             Self::Point => "place in its file of the point that was hit, from 0, or -1",
             Self::Tests => "points that the pixel's rays were tested against",
             Self::Cells => "borders between grid cells that the pixel's rays crossed",
-            Self::Iterations => "iterations of the refinement; 0, since it is not built yet",
+            Self::Iterations => "iterations of the refinement; 0 where hits are taken as they are",
             Self::Trust => {
                 "distance of the hit from its point over the trust radius, 0 to 1, or -1"
             }

@@ -18,7 +18,8 @@ use kernels::layout::{
     ObjectInfo, ShadeParams,
 };
 use points::{Cloud, CloudError, ObjectPoints, PointSet};
-use scene::{Albedo, FeatureSize, Light, Object, Polynomial, Scene, Up};
+pub use scene::Primary;
+use scene::{Albedo, FeatureSize, Light, Object, Polynomial, Refine, Scene, Up};
 use std::sync::Arc;
 
 /// Albedo of objects whose points have no colours and whose material names none.
@@ -54,6 +55,8 @@ pub struct Plan {
     pub grid_resolution: u32,
     /// Cells a ray may cross in one pass; 0: the device decides. Changes no pixel.
     pub cells_per_pass: u32,
+    /// How camera rays find their first hit. Changes no pixel.
+    pub primary: Primary,
     /// Parameters of `camera_rays`, but for the tile.
     pub camera: CameraParams,
     /// Parameters of `shade`, but for the tile.
@@ -158,6 +161,7 @@ impl Plan {
             fits,
             grid_resolution: scene.render.grid_resolution,
             cells_per_pass: scene.render.cells_per_pass,
+            primary: scene.render.primary,
             camera: view.params,
             shade: ShadeParams {
                 forward: view.params.forward,
@@ -182,6 +186,12 @@ impl Plan {
             },
             cloud,
         })
+    }
+
+    /// Whether any object's hits are refined.
+    #[must_use]
+    pub fn refines(&self) -> bool {
+        self.objects.iter().any(|object| object.max_iterations > 0)
     }
 
     /// The tiles of the picture, row by row.
@@ -238,16 +248,20 @@ pub fn checked_crop(crop: Option<Window>, image: [u32; 2]) -> Result<Window, Pla
     if inside { Ok(crop) } else { Err(PlanError::Crop { crop, image }) }
 }
 
+fn kind_of(polynomial: Polynomial) -> u32 {
+    match polynomial {
+        Polynomial::Full => FIT_FULL,
+        Polynomial::Incomplete => FIT_INCOMPLETE,
+    }
+}
+
 fn fit_params(object: &Object, index: u32, cloud: &Cloud) -> FitParams {
     let slots = cloud.objects[index as usize];
     FitParams {
         first_slot: slots.first_slot,
         point_count: slots.count,
         neighbors: object.surface.neighbors.min(slots.count.saturating_sub(1)).max(1),
-        polynomial: match object.surface.polynomial {
-            Polynomial::Full => FIT_FULL,
-            Polynomial::Incomplete => FIT_INCOMPLETE,
-        },
+        polynomial: kind_of(object.surface.polynomial),
         feature_size: match object.surface.feature_size {
             FeatureSize::Adaptive => 0.0,
             FeatureSize::Constant(h) => h as f32,
@@ -281,9 +295,15 @@ fn object_infos(
             },
             first_color: if own.is_some() { colors.len() as u32 } else { NONE },
             first_slot: cloud.objects[index].first_slot,
-            pad0: 0,
-            pad1: 0,
-            pad2: 0,
+            polynomial: kind_of(object.surface.polynomial),
+            max_iterations: match object.surface.refine {
+                Refine::None => 0,
+                Refine::Project { max_iterations, .. } => max_iterations,
+            },
+            tolerance: match object.surface.refine {
+                Refine::None => 0.0,
+                Refine::Project { tolerance, .. } => tolerance as f32,
+            },
         });
         if let Some(own) = own {
             colors.extend(cloud.by_slot(index, own).iter().flatten());

@@ -6,6 +6,10 @@
 
 use kernels::layout::{FitOutcome, GridInfo, Point};
 
+/// Radius that the grid lists a point with, over its trust radius: rounding then loses no cell that a
+/// hit lies in.
+pub const BALL_MARGIN: f32 = 1.0001;
+
 /// Edge of a cell over the median trust radius.
 const EDGE_PER_TRUST: f64 = 2.5;
 /// Cells a point, at most: 8 bytes each.

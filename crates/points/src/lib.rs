@@ -17,7 +17,7 @@ mod summary;
 mod watch;
 
 pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange};
-pub use grid::plan_grid;
+pub use grid::{BALL_MARGIN, plan_grid};
 pub use neighbors::NeighborSearch;
 pub use read::{PointsError, read};
 pub use set::{Attribute, ColorEncoding, PointSet, Values};

@@ -13,6 +13,8 @@ pub struct Ray<R> {
     pub direction: V3<R>,
     /// Nearest hit so far, or [`NO_HIT`].
     pub hit_t: R,
+    /// Hits up to this distance do not count: they were refined away.
+    pub after: R,
     /// The point hit, or `NONE`.
     pub hit_slot: u32,
     /// The cell that it is in, or `NONE`.
@@ -37,6 +39,7 @@ pub fn camera_ray<R: Real>(params: &CameraParams, grid: &Grid<R>, pixel: [u32; 2
         origin,
         direction,
         hit_t: R::of(NO_HIT),
+        after: R::of(0.0),
         hit_slot: NONE,
         cell: grid.enter(origin, direction),
         cells: 0,

@@ -5,9 +5,7 @@ use crate::fit::{COLLINEAR, Frame, fit_coefficients};
 use crate::least_squares::NormalEquations;
 use crate::polynomial::Polynomial;
 use crate::real::{Real, V3};
-use kernels::layout::{
-    FIT_FULL, FIT_INCOMPLETE, FIT_NO_SURFACE, FIT_PLANE, FitParams, NONE, Point,
-};
+use kernels::layout::{FIT_NO_SURFACE, FitParams, NONE, Point};
 
 const SMALLEST_FEATURE: f64 = 1e-15;
 

@@ -2,8 +2,8 @@
 
 use crate::real::{NO_HIT, Real, V3};
 use kernels::layout::{GridInfo, NONE};
+use points::BALL_MARGIN;
 
-const BALL_MARGIN: f64 = 1.0001;
 const PARALLEL: f64 = 1e-20;
 
 /// The grid's place and size, in either precision.
@@ -36,7 +36,12 @@ pub struct Ball<R> {
 impl<R: Real> Ball<R> {
     /// Around the center, with the trust radius b.
     pub fn new(center: V3<R>, trust: R) -> Self {
-        Self { center, radius: trust * R::of(BALL_MARGIN) }
+        Self { center, radius: trust * R::of(f64::from(BALL_MARGIN)) }
+    }
+
+    /// Around the center, not grown.
+    pub fn exact(center: V3<R>, radius: R) -> Self {
+        Self { center, radius }
     }
 }
 
@@ -60,7 +65,9 @@ impl<R: Real> Grid<R> {
         [id % self.resolution[0], row % self.resolution[1], row / self.resolution[1]]
     }
 
-    fn cell_of(&self, x: V3<R>) -> [u32; 3] {
+    /// The cell that holds x, or the nearest one where x lies outside.
+    #[must_use]
+    pub fn cell_of(&self, x: V3<R>) -> [u32; 3] {
         let at = (x - self.origin).times(self.inverse_edge);
         [0, 1, 2].map(|axis| {
             let last = R::of_u32(self.resolution[axis]) - R::of(1.0);

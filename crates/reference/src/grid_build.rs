@@ -5,6 +5,7 @@
 use crate::grid::{Ball, Grid};
 use crate::polynomial::Polynomial;
 use crate::real::Real;
+use crate::refine::PointCells;
 use kernels::layout::GridInfo;
 
 /// The points of each cell.
@@ -14,6 +15,26 @@ pub struct CellLists {
     pub cells: Vec<[u32; 2]>,
     /// Slots, cell after cell, in the order of (object, place in the file) within a cell.
     pub slots: Vec<u32>,
+}
+
+/// Lists the points that carry a surface by the cell they lie in, in the order of `order`.
+#[must_use]
+pub fn list_points<R: Real>(
+    grid: &Grid<R>,
+    polynomials: &[Polynomial<R>],
+    order: &[u32],
+) -> PointCells {
+    let mut pairs: Vec<(u32, u32)> = order
+        .iter()
+        .map(|&slot| (&polynomials[slot as usize], slot))
+        .filter(|(p, _)| p.trust > R::of(0.0))
+        .map(|(p, slot)| (grid.cell_id(grid.cell_of(p.center)), slot))
+        .collect();
+    pairs.sort_by_key(|pair| pair.0);
+    let offsets = (0..=grid.cell_count())
+        .map(|cell| pairs.partition_point(|pair| pair.0 < cell) as u32)
+        .collect();
+    PointCells { offsets, slots: pairs.into_iter().map(|pair| pair.1).collect() }
 }
 
 /// Lists the points whose trust ball meets each cell. `order` holds slots by ordinal.

@@ -35,7 +35,9 @@ pub fn grid_trace<R: Real>(
                             .get(ray.hit_slot as usize)
                             .is_some_and(|hit| (p.object, p.index) < (hit.object, hit.index))
                     };
-                    if t < ray.hit_t || (t == ray.hit_t && t < R::of(NO_HIT) && first_of_equals()) {
+                    let nearer =
+                        t < ray.hit_t || (t == ray.hit_t && t < R::of(NO_HIT) && first_of_equals());
+                    if nearer && t > ray.after {
                         ray.hit_t = t;
                         ray.hit_slot = slot;
                     }

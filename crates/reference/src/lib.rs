@@ -15,8 +15,11 @@ pub mod least_squares;
 pub mod polynomial;
 pub mod projection;
 pub mod real;
+pub mod refine;
 pub mod shade;
+pub mod surface_hit;
 
+use camera_rays::Ray;
 use grid::Grid;
 use grid_build::CellLists;
 use kernels::layout::{FilmPixel, FitOutcome, GridInfo};
@@ -25,6 +28,8 @@ use points::{NeighborSearch, Watch, plan_grid};
 use polynomial::Polynomial;
 use rayon::prelude::*;
 use real::Real;
+use refine::{PointCells, Refined, Surroundings};
+use surface_hit::{Hit, surface_hit};
 
 /// Points fitted, and rows of pixels traced, between two looks at the watcher.
 const FIT_BATCH: usize = 1 << 14;
@@ -41,6 +46,8 @@ pub struct Reference<R> {
     pub grid: GridInfo,
     /// The points of each cell.
     pub lists: CellLists,
+    /// The points of each cell, each once; empty where nothing is refined.
+    pub point_cells: PointCells,
 }
 
 impl<R: Real> Reference<R> {
@@ -83,8 +90,13 @@ impl<R: Real> Reference<R> {
         watch.stage("building the grid", 1);
         let grid = plan_grid(&cloud.points, &outcomes, plan.grid_resolution);
         let lists = grid_build::build_grid(&grid, &polynomials, &cloud.order);
+        let point_cells = if plan.refines() {
+            grid_build::list_points(&Grid::from(&grid), &polynomials, &cloud.order)
+        } else {
+            PointCells::default()
+        };
         watch.done(1);
-        Some(Self { polynomials, outcomes, grid, lists })
+        Some(Self { polynomials, outcomes, grid, lists, point_cells })
     }
 
     /// Traces one picture of the plan that this was made for; `None` where the watcher asked for an
@@ -128,8 +140,41 @@ impl<R: Real> Reference<R> {
                 let pixel = [i % window.size[0], i / window.size[0]];
                 let mut ray = camera_rays::camera_ray(&camera, &grid, pixel);
                 grid_trace::grid_trace(&mut ray, &grid, &self.lists, &self.polynomials);
-                shade::shade(&ray, &self.polynomials, &shading)
+                let (hit, iterations) = self.settle(plan, &grid, &mut ray);
+                shade::shade(&ray, hit, iterations, &shading)
             })
             .collect()
+    }
+
+    /// Where a ray that has ended meets the surface, with its object, and the iterations that took.
+    fn settle(
+        &self,
+        plan: &Plan,
+        grid: &Grid<R>,
+        ray: &mut Ray<R>,
+    ) -> (Option<(Hit<R>, u32)>, u32) {
+        let surroundings = Surroundings {
+            grid,
+            polynomials: &self.polynomials,
+            outcomes: &self.outcomes,
+            cells: &self.point_cells,
+            objects: &plan.objects,
+        };
+        let mut iterations = 0;
+        while let Some(hit) = surface_hit(ray, &self.polynomials) {
+            let object = self.polynomials[ray.hit_slot as usize].object;
+            if plan.objects[object as usize].max_iterations == 0 {
+                return (Some((hit, object)), iterations);
+            }
+            match surroundings.refine(ray, hit) {
+                Refined::Accepted(hit, more) => return (Some((hit, object)), iterations + more),
+                Refined::Rejected(more) => {
+                    iterations += more;
+                    refine::resume(ray, grid);
+                    grid_trace::grid_trace(ray, grid, &self.lists, &self.polynomials);
+                }
+            }
+        }
+        (None, iterations)
     }
 }

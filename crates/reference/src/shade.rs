@@ -1,8 +1,8 @@
 //! Twin of `shade`: Lambert's law at the hit, the background where there is none.
 
 use crate::camera_rays::Ray;
-use crate::polynomial::Polynomial;
 use crate::real::{Real, V3};
+use crate::surface_hit::Hit;
 use kernels::layout::{FilmPixel, LIGHT_POINT, Light, NONE, ObjectInfo, ShadeParams};
 
 /// What shading reads besides the ray.
@@ -42,16 +42,17 @@ fn irradiance<R: Real>(light: &Light, x: V3<R>, normal: V3<R>) -> V3<R> {
     strength.over(square).times(normal.dot(l).max(zero))
 }
 
-/// What one pixel shows.
+/// What one pixel shows. `hit` comes with its object; `iterations` are those of its refinement.
 #[must_use]
 pub fn shade<R: Real>(
     ray: &Ray<R>,
-    polynomials: &[Polynomial<R>],
+    hit: Option<(Hit<R>, u32)>,
+    iterations: u32,
     shading: &Shading<'_>,
 ) -> FilmPixel {
     let params = shading.params;
-    let counts = [ray.tests, ray.cells, ray.hit_slot, 0];
-    let Some(p) = polynomials.get(ray.hit_slot as usize) else {
+    let counts = [ray.tests, ray.cells, ray.hit_slot, iterations];
+    let Some((hit, object)) = hit else {
         let [r, g, b] = if params.transparent != 0 { [0.0; 3] } else { params.background };
         return FilmPixel {
             color: [r, g, b, 0.0],
@@ -60,22 +61,21 @@ pub fn shade<R: Real>(
             counts,
         };
     };
-    let (y, normal) = p.surface_at(ray.origin, ray.direction, ray.hit_t);
-    let x = p.center + y;
+    let Hit { position: x, normal, .. } = hit;
     let light = shading
         .lights
         .iter()
         .take(params.light_count as usize)
         .fold(V3::splat(R::of(0.0)), |sum, light| sum + irradiance(light, x, normal));
-    let color = point_color(shading, &shading.objects[p.object as usize], ray.hit_slot);
+    let color = point_color(shading, &shading.objects[object as usize], ray.hit_slot);
     let [r, g, b] = (color * light.times(R::of(std::f64::consts::FRAC_1_PI))).to_f32();
     let [px, py, pz] = x.to_f32();
     let [nx, ny, nz] = normal.to_f32();
-    let depth = ray.hit_t * ray.direction.dot(V3::of_f32(params.forward));
+    let depth = hit.t * ray.direction.dot(V3::of_f32(params.forward));
     FilmPixel {
         color: [r, g, b, 1.0],
         position_depth: [px, py, pz, depth.to_f32()],
-        normal_object: [nx, ny, nz, p.object as f32],
+        normal_object: [nx, ny, nz, object as f32],
         counts,
     }
 }

@@ -1,10 +1,13 @@
 //! One frame: tile after tile, pass after pass.
 
 use crate::RenderError;
-use crate::passes::{CameraRays, GridTrace, GridTraceIo, Records, Shade, ShadeIo};
+use crate::passes::{
+    CameraRays, GridTrace, GridTraceIo, Records, Refine, RefineIo, Shade, ShadeIo, SurfaceHit,
+    SurfaceHitIo,
+};
 use crate::state::RayState;
 use gpu::{Buffer, Device, Recorder};
-use kernels::layout::{FilmPixel, TraceParams};
+use kernels::layout::{FilmPixel, Hit, TraceParams};
 use plan::{Picture, Plan, Window};
 use points::Watch;
 use points::device::Surfaces;
@@ -53,10 +56,13 @@ pub struct Renderer {
     colors: Buffer,
     lights: Buffer,
     film: Buffer,
+    hits: Buffer,
     live: Buffer,
     state: RayState,
     camera_rays: CameraRays,
     grid_trace: GridTrace,
+    surface_hit: SurfaceHit,
+    refine: Refine,
     shade: Shade,
     recorder: Recorder,
 }
@@ -80,23 +86,32 @@ impl Renderer {
         records: Records,
         watch: &dyn Watch,
     ) -> Result<Self, RenderError> {
-        let surfaces =
-            Surfaces::build(device, &plan.cloud, &plan.fits, plan.grid_resolution, watch)?;
+        let surfaces = Surfaces::build(
+            device,
+            &plan.cloud,
+            &plan.fits,
+            plan.grid_resolution,
+            plan.refines(),
+            watch,
+        )?;
         let tiles = plan.tiles();
         let largest = |axis: usize| tiles.iter().map(|tile| tile.size[axis]).max().unwrap_or(1);
         let tile_size = [largest(0), largest(1)];
-        let film_bytes =
-            u64::from(tile_size[0]) * u64::from(tile_size[1]) * size_of::<FilmPixel>() as u64;
+        let tile_pixels = u64::from(tile_size[0]) * u64::from(tile_size[1]);
+        let film_bytes = tile_pixels * size_of::<FilmPixel>() as u64;
         Ok(Self {
             surfaces,
             objects: Buffer::from_slice(device, "objects", &plan.objects)?,
             colors: Buffer::from_slice(device, "point colors", &plan.colors)?,
             lights: Buffer::from_slice(device, "lights", &plan.lights)?,
             film: Buffer::new(device, "film", film_bytes)?,
-            live: Buffer::new(device, "live rays", 4)?,
+            hits: Buffer::new(device, "hits", tile_pixels * size_of::<Hit>() as u64)?,
+            live: Buffer::new(device, "live rays", 8)?,
             state: RayState::new(device, tile_size)?,
             camera_rays: CameraRays::new(device)?,
             grid_trace: GridTrace::new(device, records)?,
+            surface_hit: SurfaceHit::new(device)?,
+            refine: Refine::new(device)?,
             shade: Shade::new(device)?,
             recorder: Recorder::new(device)?,
         })
@@ -126,6 +141,7 @@ impl Renderer {
             let started = Instant::now();
             self.start_rays(plan, &tile);
             self.trace_to_the_end(plan, &tile, &mut stats, watch)?;
+            self.settle_hits(plan, &tile, &mut stats, watch)?;
             self.shade_tile(plan, &tile, &mut stats)?;
             stats.trace += started.elapsed();
             stats.camera_rays += tile.pixels() as u64;
@@ -173,6 +189,81 @@ impl Renderer {
         Ok(())
     }
 
+    /// Hits of all rays that have ended; refined, where an object asks for it, and rays whose hit was
+    /// refined away traced on.
+    fn settle_hits(
+        &mut self,
+        plan: &Plan,
+        tile: &Window,
+        stats: &mut FrameStats,
+        watch: &dyn Watch,
+    ) -> Result<(), RenderError> {
+        let params = TraceParams { tile_size: tile.size, cells: 0, work: 0 };
+        let bytes = (tile.pixels() * size_of::<Hit>()) as u64;
+        self.recorder.fill(&self.hits, 0, bytes, 0);
+        loop {
+            self.recorder.fill(&self.live, 0, 8, 0);
+            let io = SurfaceHitIo {
+                state: &self.state.current,
+                polynomials: &self.surfaces.polynomials,
+                objects: &self.objects,
+                hits: &self.hits,
+                live: &self.live,
+            };
+            self.surface_hit.record(&mut self.recorder, io, &params);
+            if !plan.refines() {
+                return Ok(()); // recorded; shading submits it
+            }
+            let [pending, _] = self.submit_and_count(stats)?;
+            if self.refine_hits(pending, &params, stats, watch)? == 0 {
+                return Ok(());
+            }
+            let (surfaces, state) = (&self.surfaces, &self.state);
+            self.refine.record_resume(&mut self.recorder, surfaces, state, &self.hits, &params);
+            self.state.swap();
+            self.trace_to_the_end(plan, tile, stats, watch)?;
+        }
+    }
+
+    /// Iterations until no hit is pending; returns how many were rejected.
+    fn refine_hits(
+        &mut self,
+        mut pending: u32,
+        params: &TraceParams,
+        stats: &mut FrameStats,
+        watch: &dyn Watch,
+    ) -> Result<u32, RenderError> {
+        let mut all_rejected = 0;
+        while pending > 0 {
+            if watch.interrupted() {
+                return Err(RenderError::Interrupted);
+            }
+            let Some(point_cells) = &self.surfaces.point_cells else { break };
+            self.recorder.fill(&self.live, 0, 8, 0);
+            let io = RefineIo {
+                surfaces: &self.surfaces,
+                point_cells,
+                state: &self.state.current,
+                objects: &self.objects,
+                hits: &self.hits,
+                live: &self.live,
+            };
+            self.refine.record(&mut self.recorder, io, params);
+            let [still_pending, rejected] = self.submit_and_count(stats)?;
+            pending = still_pending;
+            all_rejected += rejected;
+        }
+        Ok(all_rejected)
+    }
+
+    /// Runs what is recorded, and reads the two counters.
+    fn submit_and_count(&mut self, stats: &mut FrameStats) -> Result<[u32; 2], RenderError> {
+        stats.add_kernels(&self.recorder.submit()?.passes);
+        let mut counts = [0; 2];
+        self.live.read(0, &mut counts)?;
+        Ok(counts)
+    }
+
     fn shade_tile(
         &mut self,
         plan: &Plan,
@@ -182,6 +273,7 @@ impl Renderer {
         let io = ShadeIo {
             state: &self.state.current,
             polynomials: &self.surfaces.polynomials,
+            hits: &self.hits,
             objects: &self.objects,
             colors: &self.colors,
             lights: &self.lights,

@@ -373,19 +373,19 @@ pub(crate) static SURFACE: Table = Table {
             "refine",
             Kind::Choice(&["none", "project"]),
             Value("\"none\""),
-            "Take the first polynomial hit, or iterate to the exact surface.",
+            "Take the nearest hit with a stored polynomial, or project it onto the exact surface.",
         ),
         key(
             "tolerance",
             Kind::Number(numbers(1e-9, 1.0, "feature sizes")),
             Value("1e-4"),
-            "When `project` stops.",
+            "Distance of a hit to its projection at which `project` stops.",
         ),
         key(
             "max_iterations",
-            count(1, 1000, "iterations"),
+            count(1, 100, "iterations"),
             Value("8"),
-            "When `project` stops at the latest.",
+            "Projections of one hit at most, for `project`; the last one then stands.",
         ),
         key(
             "close_gaps",

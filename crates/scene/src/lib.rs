@@ -27,7 +27,7 @@ mod tests;
 pub use error::SceneError;
 pub use scene::{
     Albedo, Background, Camera, FeatureSize, Fresnel, ImageSettings, Light, Material, Object,
-    Polynomial, Primary, RayLoop, RenderSettings, Scene, Surface, Up,
+    Polynomial, Primary, RayLoop, Refine, RenderSettings, Scene, Surface, Up,
 };
 pub use schema::json_schema;
 pub use transform::Transform;

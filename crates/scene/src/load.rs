@@ -6,7 +6,8 @@ use crate::keys::{self, SCENE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
     Albedo, Background, Camera, FeatureSize, Fresnel, ImageSettings, Light, Material, Object,
-    Polynomial, Primary, RayLoop, RenderSettings, Scene, SceneError, Surface, Transform, Up,
+    Polynomial, Primary, RayLoop, Refine, RenderSettings, Scene, SceneError, Surface, Transform,
+    Up,
 };
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -283,6 +284,13 @@ impl Surface {
             feature_size: to_number(&table.value("feature_size"))
                 .map_or(FeatureSize::Adaptive, FeatureSize::Constant),
             trust: table.number("trust"),
+            refine: match table.text("refine").as_str() {
+                "project" => Refine::Project {
+                    tolerance: table.number("tolerance"),
+                    max_iterations: table.count("max_iterations"),
+                },
+                _ => Refine::None,
+            },
         }
     }
 }

@@ -150,6 +150,22 @@ pub struct Surface {
     pub feature_size: FeatureSize,
     /// Trust radius over feature size, b/h, 0.5 to 1.
     pub trust: f64,
+    /// What becomes of a hit with a stored polynomial.
+    pub refine: Refine,
+}
+
+/// What becomes of a hit with a stored polynomial (docs/method.md, section 2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Refine {
+    /// It stands.
+    None,
+    /// It is projected onto the point set surface.
+    Project {
+        /// Distance of a hit to its projection that is near enough, over h, 1e-7 to 1.
+        tolerance: f64,
+        /// Projections of one stored hit, 1 to 100.
+        max_iterations: u32,
+    },
 }
 
 /// Which terms a point's polynomial has.

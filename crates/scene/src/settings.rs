@@ -1,7 +1,7 @@
 //! A scene as canonical TOML, for the header of the pictures it makes.
 
 use crate::{
-    Albedo, FeatureSize, Fresnel, Light, Object, Polynomial, RenderSettings, Scene, Surface,
+    Albedo, FeatureSize, Fresnel, Light, Object, Polynomial, Refine, RenderSettings, Scene, Surface,
 };
 use std::fmt::{self, Write};
 
@@ -101,8 +101,15 @@ fn write_surface(out: &mut String, surface: &Surface) -> fmt::Result {
         FeatureSize::Constant(length) => writeln!(out, "feature_size = {length:?}")?,
     }
     writeln!(out, "trust = {:?}", surface.trust)?;
-    // Written because these defaults will change: a header keeps its meaning.
-    writeln!(out, "refine = \"none\"")?;
+    match surface.refine {
+        Refine::None => writeln!(out, "refine = \"none\"")?,
+        Refine::Project { tolerance, max_iterations } => {
+            writeln!(out, "refine = \"project\"")?;
+            writeln!(out, "tolerance = {tolerance:?}")?;
+            writeln!(out, "max_iterations = {max_iterations}")?;
+        }
+    }
+    // Written because this default will change: a header keeps its meaning.
     writeln!(out, "close_gaps = false")
 }
 

@@ -52,7 +52,9 @@ neighbors = 20
 polynomial = "incomplete"
 feature_size = 0.25
 trust = 0.75
-refine = "none"
+refine = "project"
+tolerance = 2e-5
+max_iterations = 12
 close_gaps = false
 [objects.material]
 kind = "diffuse"
@@ -136,6 +138,7 @@ fn every_built_key_is_read() {
             polynomial: Polynomial::Incomplete,
             feature_size: FeatureSize::Constant(0.25),
             trust: 0.75,
+            refine: Refine::Project { tolerance: 2e-5, max_iterations: 12 },
         },
         material: Material { albedo: Albedo::Color([0.2, 0.4, 0.6]) },
     };
@@ -160,6 +163,7 @@ fn what_is_left_out_is_the_contracts_default() {
         polynomial: Polynomial::Full,
         feature_size: FeatureSize::Adaptive,
         trust: 0.6,
+        refine: Refine::None,
     };
     assert_eq!((object.surface, object.material.albedo), (surface, Albedo::Default));
     assert_eq!(object.surface, Surface::default());
@@ -257,8 +261,6 @@ fn what_is_not_built_says_so_and_is_not_ignored() {
         ("objects.0.material.ior=1.4", "objects[0].material.ior"),
         ("objects.0.material.priority=0", "objects[0].material.priority"),
         ("objects.1.volume.scalar=density", "objects[1].volume"),
-        ("objects.0.surface.refine=project", "objects[0].surface.refine"),
-        ("objects.0.surface.tolerance=1e-4", "objects[0].surface.tolerance"),
         ("objects.0.surface.close_gaps=true", "objects[0].surface.close_gaps"),
         ("objects.0.surface.normals=true", "objects[0].surface.normals"),
         ("objects.0.surface.boundary_clip=true", "objects[0].surface.boundary_clip"),

@@ -11,7 +11,7 @@ mod sort;
 use crate::{Cloud, NeighborSearch, Watch, plan_grid};
 use fit::FitPolynomials;
 use gpu::{Buffer, Device, GpuError, Recorder};
-use grid_build::GridBuild;
+use grid_build::{GridBuild, GridBuildIo};
 use kernels::layout::{FitOutcome, FitParams, GridInfo, Polynomial};
 use std::sync::Arc;
 
@@ -25,6 +25,8 @@ pub struct Surfaces {
     pub polynomials: Buffer,
     /// How each fit ended, by slot.
     pub outcomes: Vec<FitOutcome>,
+    /// The same, for kernels.
+    pub outcome_buffer: Buffer,
     /// Where the grid lies.
     pub grid: GridInfo,
     /// The same, for kernels.
@@ -32,6 +34,17 @@ pub struct Surfaces {
     /// First and past-the-last entry of each cell in `slots`.
     pub cells: Buffer,
     /// Points, cell after cell.
+    pub slots: Buffer,
+    /// Each point in its own cell alone; only where hits are refined and any point carries a surface.
+    pub point_cells: Option<PointCells>,
+}
+
+/// The points of each cell, each point once.
+#[derive(Debug)]
+pub struct PointCells {
+    /// First entry of each cell in `slots`, and one behind the last.
+    pub offsets: Buffer,
+    /// Slots, cell after cell.
     pub slots: Buffer,
 }
 
@@ -48,7 +61,8 @@ pub enum BuildError {
 
 impl Surfaces {
     /// Fits every point of the cloud and sorts the fits into a grid. `fits` has one entry an object;
-    /// `resolution` is the number of cells along the grid's longest axis, 0: chosen.
+    /// `resolution` is the number of cells along the grid's longest axis, 0: chosen; `refines` also
+    /// lists what refinement of hits reads.
     ///
     /// # Errors
     /// A device without the memory, a buffer over its limits, a lost device, an interruption.
@@ -57,35 +71,57 @@ impl Surfaces {
         cloud: &Cloud,
         fits: &[FitParams],
         resolution: u32,
+        refines: bool,
         watch: &dyn Watch,
     ) -> Result<Self, BuildError> {
         let count = cloud.points.len();
         let polynomials =
             Buffer::new(device, "polynomials", (count * size_of::<Polynomial>()) as u64)?;
-        let outcomes = fit_all(device, cloud, fits, &polynomials, watch)?;
+        let (outcomes, outcome_buffer) = fit_all(device, cloud, fits, &polynomials, watch)?;
         watch.stage("building the grid", 1);
         let grid = plan_grid(&cloud.points, &outcomes, resolution);
         let grid_info = Buffer::from_slice(device, "grid info", &[grid])?;
-        let lists = GridBuild::new(device)?.run(&grid, &grid_info, &polynomials, &cloud.order)?;
+        let build = GridBuild::new(device)?;
+        let io = GridBuildIo {
+            grid: &grid,
+            grid_info: &grid_info,
+            polynomials: &polynomials,
+            order: &cloud.order,
+        };
+        let lists = build.run(&io)?;
+        let point_cells = if refines { build.list_points(&io)? } else { None };
         watch.done(1);
-        Ok(Self { polynomials, outcomes, grid, grid_info, cells: lists.cells, slots: lists.slots })
+        Ok(Self {
+            polynomials,
+            outcomes,
+            outcome_buffer,
+            grid,
+            grid_info,
+            cells: lists.cells,
+            slots: lists.slots,
+            point_cells,
+        })
     }
 
     /// Bytes on the device that tracing needs.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        self.polynomials.bytes() + self.cells.bytes() + self.slots.bytes()
+        let listed = |cells: &PointCells| {
+            cells.offsets.bytes() + cells.slots.bytes() + self.outcome_buffer.bytes()
+        };
+        let refinement = self.point_cells.as_ref().map_or(0, listed);
+        self.polynomials.bytes() + self.cells.bytes() + self.slots.bytes() + refinement
     }
 }
 
-/// Fits batch after batch, so that lists of neighbours never fill memory.
+/// Fits batch after batch, outcomes on the host and on the device, so that lists of neighbours never fill memory.
 fn fit_all(
     device: &Arc<Device>,
     cloud: &Cloud,
     fits: &[FitParams],
     polynomials: &Buffer,
     watch: &dyn Watch,
-) -> Result<Vec<FitOutcome>, BuildError> {
+) -> Result<(Vec<FitOutcome>, Buffer), BuildError> {
     let count = cloud.points.len();
     let points = Buffer::from_slice(device, "points", &cloud.points)?;
     let outcomes = Buffer::new(device, "fit outcomes", (count * size_of::<FitOutcome>()) as u64)?;
@@ -120,7 +156,7 @@ fn fit_all(
     }
     let mut read = vec![FitOutcome { trust: 0.0, kind: 0, feature_size: 0.0 }; count];
     outcomes.read(0, &mut read)?;
-    Ok(read)
+    Ok((read, outcomes))
 }
 
 /// Invocations for a list of `count` entries: over two axes where one would be too long.

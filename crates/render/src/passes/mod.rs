@@ -2,12 +2,16 @@
 
 mod camera_rays;
 mod grid_trace;
+mod refine;
 mod shade;
+mod surface_hit;
 
 pub(crate) use camera_rays::CameraRays;
 pub use grid_trace::Records;
 pub(crate) use grid_trace::{GridTrace, GridTraceIo};
+pub(crate) use refine::{Refine, RefineIo};
 pub(crate) use shade::{Shade, ShadeIo};
+pub(crate) use surface_hit::{SurfaceHit, SurfaceHitIo};
 
 use crate::state::StateImages;
 use gpu::{Binding, PassBuilder};

@@ -4,7 +4,8 @@ use super::{bind_state, over_pixels, state_bindings};
 use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_COLORS, SHADE_FILM, SHADE_LIGHTS, SHADE_OBJECTS, STATE_IN, ShadeParams, TRACE_POLYNOMIALS,
+    SHADE_COLORS, SHADE_FILM, SHADE_LIGHTS, SHADE_OBJECTS, STATE_IN, ShadeParams, TRACE_HITS,
+    TRACE_POLYNOMIALS,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -13,6 +14,7 @@ use std::sync::Arc;
 pub(crate) struct ShadeIo<'a> {
     pub state: &'a StateImages,
     pub polynomials: &'a Buffer,
+    pub hits: &'a Buffer,
     pub objects: &'a Buffer,
     pub colors: &'a Buffer,
     pub lights: &'a Buffer,
@@ -29,7 +31,8 @@ impl Shade {
 
     pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
         let mut bindings = state_bindings(STATE_IN).to_vec();
-        let buffers = [TRACE_POLYNOMIALS, SHADE_OBJECTS, SHADE_COLORS, SHADE_LIGHTS, SHADE_FILM];
+        let buffers =
+            [TRACE_POLYNOMIALS, TRACE_HITS, SHADE_OBJECTS, SHADE_COLORS, SHADE_LIGHTS, SHADE_FILM];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         let params = size_of::<ShadeParams>();
         let kernel = Kernel::new(device, Self::NAME, &spirv::shade(), &bindings, params)?;
@@ -40,6 +43,7 @@ impl Shade {
     pub fn record(&self, rec: &mut Recorder, io: ShadeIo<'_>, params: &ShadeParams) {
         bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, io.state)
             .buffer(TRACE_POLYNOMIALS, io.polynomials)
+            .buffer(TRACE_HITS, io.hits)
             .buffer(SHADE_OBJECTS, io.objects)
             .buffer(SHADE_COLORS, io.colors)
             .buffer(SHADE_LIGHTS, io.lights)

@@ -1,0 +1,167 @@
+//! Twin of `refine` and `resume`: a stored hit's way to the point set surface (\[T\] §4, after Adamson
+//! and Alexa; method, section 2).
+
+use crate::camera_rays::Ray;
+use crate::eigen::eigen_symmetric;
+use crate::fit::{COLLINEAR, Frame, fit_coefficients};
+use crate::grid::{Ball, Grid};
+use crate::least_squares::NormalEquations;
+use crate::polynomial::Polynomial;
+use crate::real::{NO_HIT, Real, V3};
+use crate::surface_hit::Hit;
+use kernels::layout::{FIT_NO_SURFACE, FitOutcome, NONE, ObjectInfo};
+
+const REACH: f64 = 3.0;
+const MAX_ROWS: u32 = 1024;
+const MAX_LISTED: u32 = 2048;
+
+/// The points of each cell, each point once.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct PointCells {
+    /// First entry of each cell in `slots`, and one behind the last.
+    pub offsets: Vec<u32>,
+    /// Slots, cell after cell.
+    pub slots: Vec<u32>,
+}
+
+/// What refinement reads.
+#[derive(Debug, Clone, Copy)]
+pub struct Surroundings<'a, R> {
+    /// The grid of `cells`.
+    pub grid: &'a Grid<R>,
+    /// By slot.
+    pub polynomials: &'a [Polynomial<R>],
+    /// By slot.
+    pub outcomes: &'a [FitOutcome],
+    /// The points of each cell.
+    pub cells: &'a PointCells,
+    /// By object.
+    pub objects: &'a [ObjectInfo],
+}
+
+/// What became of a hit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Refined<R> {
+    /// It stands there, after so many iterations.
+    Accepted(Hit<R>, u32),
+    /// It left its trust region, or lost its surface, after so many iterations.
+    Rejected(u32),
+}
+
+impl<R: Real> Surroundings<'_, R> {
+    /// Slots of the rows of cells around x; `None` where there are too many.
+    fn around(&self, x: V3<R>, radius: R) -> Option<Vec<u32>> {
+        let [low, high] = self.grid.cells_around(&Ball::exact(x, radius));
+        let (height, depth) = (high[1] - low[1] + 1, high[2] - low[2] + 1);
+        if height.checked_mul(depth).is_none_or(|rows| rows > MAX_ROWS) {
+            return None;
+        }
+        let rows = (0..height * depth).map(|row| {
+            let cell = |x: u32| [x, low[1] + row % height, low[2] + row / height];
+            let offset = |cell: u32| self.cells.offsets[cell as usize] as usize;
+            offset(self.grid.cell_id(cell(low[0])))..offset(self.grid.cell_id(cell(high[0])) + 1)
+        });
+        let listed: usize = rows.clone().map(|row| row.len()).sum();
+        (listed <= MAX_LISTED as usize)
+            .then(|| rows.flat_map(|row| self.cells.slots[row].iter().copied()).collect())
+    }
+
+    /// The object's point nearest to x; the stored one is near (ties: the lower index).
+    fn nearest(&self, slots: &[u32], x: V3<R>, stored: u32) -> u32 {
+        let object = self.polynomials[stored as usize].object;
+        let key = |slot: u32| {
+            let p = &self.polynomials[slot as usize];
+            let y = p.center - x;
+            (y.dot(y), p.index)
+        };
+        let mut best = stored;
+        for &slot in slots {
+            if self.polynomials[slot as usize].object == object && key(slot) < key(best) {
+                best = slot;
+            }
+        }
+        best
+    }
+
+    /// The polynomial fitted at x over the plane of its neighbourhood, and its kind.
+    fn fit_at(&self, slots: &[u32], x: V3<R>, h: R, object: u32) -> (Polynomial<R>, u32) {
+        let zero = R::of(0.0);
+        let inverse_h = R::of(1.0) / h;
+        let neighbors = || {
+            slots.iter().filter_map(|&slot| {
+                let p = &self.polynomials[slot as usize];
+                let y = (p.center - x).times(inverse_h);
+                let square = y.dot(y);
+                let counts = square <= R::of(REACH * REACH) && p.object == object;
+                counts.then(|| (y, (-square).exp_negative()))
+            })
+        };
+        let pairs = |a: V3<R>, b: V3<R>| V3([a.x() * b.y(), a.x() * b.z(), a.y() * b.z()]);
+        let (mut total, mut sum) = (zero, V3::splat(zero));
+        let (mut diagonal, mut off) = (V3::splat(zero), V3::splat(zero));
+        for (y, weight) in neighbors() {
+            let wy = y.times(weight);
+            total = total + weight;
+            sum = sum + wy;
+            diagonal = diagonal + wy * y;
+            off = off + pairs(wy, y);
+        }
+        let mean = sum.over(total.max(R::of(1e-30)));
+        let eigen = eigen_symmetric(diagonal - sum * mean, off - pairs(sum, mean));
+        let n = eigen.smallest.normalize();
+        let u = eigen.largest;
+        let frame = Frame { n, u, v: n.cross(u) };
+        let mut equations = NormalEquations::default();
+        for (y, weight) in neighbors() {
+            equations.add_sample(y.dot(frame.u), y.dot(frame.v), y.dot(n), weight);
+        }
+        let spans_plane = eigen.values.y() > R::of(COLLINEAR) * eigen.values.z();
+        let first =
+            if spans_plane { self.objects[object as usize].polynomial } else { FIT_NO_SURFACE };
+        let (kind, c) = fit_coefficients(&equations, first, u32::MAX);
+        (frame.to_world(x, h, inverse_h, &c), kind)
+    }
+
+    /// Follows a stored hit to the surface, or until it leaves the trust region.
+    #[must_use]
+    pub fn refine(&self, ray: &Ray<R>, mut hit: Hit<R>) -> Refined<R> {
+        let stored = &self.polynomials[ray.hit_slot as usize];
+        let info = &self.objects[stored.object as usize];
+        let mut iterations = 0;
+        while iterations < info.max_iterations {
+            let from_stored = hit.position - stored.center;
+            let reach = from_stored.dot(from_stored).sqrt();
+            let Some(near) = self.around(hit.position, reach) else { break };
+            let nearest = self.nearest(&near, hit.position, ray.hit_slot) as usize;
+            let h = R::of_f32(self.outcomes[nearest].feature_size);
+            let Some(slots) = self.around(hit.position, R::of(REACH) * h) else { break };
+            let (mut p, kind) = self.fit_at(&slots, hit.position, h, stored.object);
+            p.trust = R::of_f32(self.outcomes[nearest].trust);
+            iterations += 1;
+            let settled = p.offset.abs() <= R::of_f32(info.tolerance) * h;
+            let t = if settled { hit.t } else { p.intersect(ray.origin, ray.direction) };
+            if kind == FIT_NO_SURFACE || t >= R::of(NO_HIT) {
+                return Refined::Rejected(iterations);
+            }
+            let (y, normal) = p.surface_at(ray.origin, ray.direction, t);
+            let x = if settled { hit.position } else { hit.position + y };
+            let from_stored = x - stored.center;
+            if from_stored.dot(from_stored) > stored.trust * stored.trust {
+                return Refined::Rejected(iterations);
+            }
+            hit = Hit { position: x, t, normal };
+            if settled {
+                break;
+            }
+        }
+        Refined::Accepted(hit, iterations)
+    }
+}
+
+/// Sends a ray whose hit was refined away on to the next.
+pub fn resume<R: Real>(ray: &mut Ray<R>, grid: &Grid<R>) {
+    ray.after = ray.hit_t;
+    ray.hit_t = R::of(NO_HIT);
+    ray.hit_slot = NONE;
+    ray.cell = grid.cell_id(grid.cell_of(ray.origin + ray.direction.times(ray.after)));
+}

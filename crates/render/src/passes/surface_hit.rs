@@ -1,0 +1,50 @@
+//! The pass `surface_hit`.
+
+use super::{bind_state, over_pixels, state_bindings};
+use crate::state::StateImages;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use kernels::layout::{
+    SHADE_OBJECTS, STATE_IN, TRACE_HITS, TRACE_LIVE, TRACE_POLYNOMIALS, TraceParams,
+};
+use kernels::spirv;
+use std::sync::Arc;
+
+/// What the pass works on.
+pub(crate) struct SurfaceHitIo<'a> {
+    pub state: &'a StateImages,
+    pub polynomials: &'a Buffer,
+    pub objects: &'a Buffer,
+    /// Zero before a tile's first time.
+    pub hits: &'a Buffer,
+    /// Two u32, zero before: pending hits, and nothing.
+    pub live: &'a Buffer,
+}
+
+/// Where each ray that has ended met the polynomial it hit.
+pub(crate) struct SurfaceHit {
+    kernel: Kernel,
+}
+
+impl SurfaceHit {
+    pub const NAME: &'static str = "surface_hit";
+
+    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+        let mut bindings = state_bindings(STATE_IN).to_vec();
+        let buffers = [TRACE_POLYNOMIALS, TRACE_LIVE, SHADE_OBJECTS, TRACE_HITS];
+        bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        let params = size_of::<TraceParams>();
+        let kernel = Kernel::new(device, Self::NAME, &spirv::surface_hit(), &bindings, params)?;
+        Ok(Self { kernel })
+    }
+
+    /// Records the hits of a tile whose rays have all ended.
+    pub fn record(&self, rec: &mut Recorder, io: SurfaceHitIo<'_>, params: &TraceParams) {
+        bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, io.state)
+            .buffer(TRACE_POLYNOMIALS, io.polynomials)
+            .buffer(TRACE_LIVE, io.live)
+            .buffer(SHADE_OBJECTS, io.objects)
+            .buffer(TRACE_HITS, io.hits)
+            .push(params)
+            .dispatch(over_pixels(params.tile_size));
+    }
+}

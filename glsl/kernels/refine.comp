@@ -1,0 +1,179 @@
+// refine: one iteration of each pending hit towards the point set surface (section 4 of the paper,
+// after Adamson and Alexa).
+//
+// reads   the ray state, grid, polynomials, objects
+//         outcomes         h and b of each point
+//         offsets, slots   the points of each cell, each point once
+// writes  hits             projected, and accepted, rejected, or pending still
+//         live             how many are pending still
+//         rejected         how many are rejected
+// runs    one invocation per pixel of the tile; dispatched until none is pending
+// twin    crates/reference/src/refine.rs
+//
+// At the hit x the polynomial is fitted anew, as at a point: P(x) = x + g(0, 0) n. Where P(x) is
+// farther than the tolerance, the ray meets that polynomial at the next x; where it does not, or
+// where x leaves the trust region that it began in, the next stored polynomial is tried.
+// Neighbourhoods too large for one dispatch, which only very uneven sets have, keep the stored hit.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define STATE_READS
+#include "layout.glsl"
+#include "math.glsl"
+#include "grid.glsl"
+#include "eigen.glsl"
+#include "fit.glsl"
+#include "polynomial.glsl"
+#include "state.glsl"
+#include "index.glsl"
+
+layout(local_size_x = TILE_GROUP) in;
+layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
+layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
+layout(std430, binding = TRACE_LIVE) buffer Live { uint live; uint rejected; };
+layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
+layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
+layout(std430, binding = REFINE_OFFSETS) readonly buffer Offsets { uint offsets[]; };
+layout(std430, binding = REFINE_SLOTS) readonly buffer Slots { uint slots[]; };
+layout(std430, binding = REFINE_OUTCOMES) readonly buffer Outcomes { FitOutcome outcomes[]; };
+layout(push_constant) uniform Push { TraceParams params; };
+
+#define REACH 3.0        // of the weights, over h
+#define MAX_ROWS 1024u   // of cells that a neighbourhood may span
+#define MAX_LISTED 2048u // points in them
+
+// Rows of cells, along x, around a point.
+struct Rows {
+    uvec3 low;
+    uvec3 high;
+    uint count; // 0 where there are too many, or too many points in them
+};
+
+uvec2 row_range(Rows rows, uint row) {
+    uint height = rows.high.y - rows.low.y + 1u;
+    uvec2 yz = rows.low.yz + uvec2(row % height, row / height);
+    return uvec2(offsets[cell_id(grid, uvec3(rows.low.x, yz))], offsets[cell_id(grid, uvec3(rows.high.x, yz)) + 1u]);
+}
+
+Rows rows_around(vec3 x, float radius) {
+    Rows rows;
+    cells_around(grid, x, radius, rows.low, rows.high);
+    uint count = (rows.high.y - rows.low.y + 1u) * (rows.high.z - rows.low.z + 1u);
+    rows.count = count <= MAX_ROWS ? count : 0u;
+    uint listed = 0u;
+    for (uint row = 0u; row < rows.count; ++row) {
+        uvec2 range = row_range(rows, row);
+        listed += range.y - range.x;
+    }
+    rows.count = listed <= MAX_LISTED ? rows.count : 0u;
+    return rows;
+}
+
+// The object's point nearest to x; the stored one is near (ties: the lower index).
+uint nearest_slot(Rows rows, vec3 x, uint stored) {
+    uint object = polynomials[stored].object;
+    uint best = stored, best_index = polynomials[stored].index;
+    vec3 to_stored = polynomials[stored].center_trust.xyz - x;
+    float best_square = dot3(to_stored, to_stored);
+    for (uint row = 0u; row < rows.count; ++row) {
+        uvec2 range = row_range(rows, row);
+        for (uint i = range.x; i < range.y; ++i) {
+            uint slot = slots[i];
+            uint index = polynomials[slot].index;
+            vec3 y = polynomials[slot].center_trust.xyz - x;
+            float square = dot3(y, y);
+            bool nearer = square < best_square || (square == best_square && index < best_index);
+            bool better = nearer && polynomials[slot].object == object;
+            best = better ? slot : best;
+            best_index = better ? index : best_index;
+            best_square = better ? square : best_square;
+        }
+    }
+    return best;
+}
+
+// A neighbour's place in units of h, and its weight; 0 beyond the reach and for other objects.
+vec4 weighted_neighbor(uint slot, vec3 x, float inverse_h, uint object) {
+    vec3 y = (polynomials[slot].center_trust.xyz - x) * inverse_h;
+    float square = dot3(y, y);
+    bool counts = square <= REACH * REACH && polynomials[slot].object == object;
+    return vec4(y, counts ? exp_negative(-square) : 0.0);
+}
+
+// The polynomial fitted at x over the plane of its neighbourhood; kind FIT_NO_SURFACE where there is
+// none.
+Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, out uint kind) {
+    float inverse_h = 1.0 / h;
+    float total = 0.0;
+    vec3 sum = vec3(0.0), diagonal = vec3(0.0), off = vec3(0.0);
+    for (uint row = 0u; row < rows.count; ++row) {
+        uvec2 range = row_range(rows, row);
+        for (uint i = range.x; i < range.y; ++i) {
+            vec4 neighbor = weighted_neighbor(slots[i], x, inverse_h, object);
+            vec3 y = neighbor.xyz, wy = neighbor.w * neighbor.xyz;
+            total += neighbor.w;
+            sum += wy;
+            diagonal += wy * y;
+            off += vec3(wy.x * y.y, wy.x * y.z, wy.y * y.z);
+        }
+    }
+    vec3 mean = sum / max(total, 1e-30);
+    diagonal -= sum * mean;
+    off -= vec3(sum.x * mean.y, sum.x * mean.z, sum.y * mean.z);
+    vec3 values, n, u;
+    eigen_symmetric(diagonal, off, values, n, u);
+    n = normalize3(n);
+    vec3 v = cross3(n, u);
+
+    NormalEquations eq;
+    for (int a = 0; a < 21; ++a) eq.matrix[a] = 0.0;
+    for (int a = 0; a < UNKNOWNS; ++a) eq.right[a] = 0.0;
+    for (uint row = 0u; row < rows.count; ++row) {
+        uvec2 range = row_range(rows, row);
+        for (uint i = range.x; i < range.y; ++i) {
+            vec4 neighbor = weighted_neighbor(slots[i], x, inverse_h, object);
+            vec3 y = neighbor.xyz;
+            if (neighbor.w > 0.0) add_sample(eq, dot3(y, u), dot3(y, v), dot3(y, n), neighbor.w);
+        }
+    }
+    bool spans_plane = values.y > COLLINEAR * values.z;
+    float c[6];
+    kind = fit_coefficients(eq, spans_plane ? objects[object].polynomial : FIT_NO_SURFACE, UNKNOWNS, c);
+    return to_world(x, trust, h, inverse_h, n, u, v, c, object, 0u);
+}
+
+void main() {
+    uvec2 pixel = tile_pixel();
+    if (any(greaterThanEqual(pixel, params.tile_size))) return;
+    uint at = pixel.y * params.tile_size.x + pixel.x;
+    Hit hit = hits[at];
+    if (bitfieldExtract(hit.status, 0, HIT_STATUS_BITS) != HIT_PENDING) return;
+    Ray ray = load_ray(ivec2(pixel));
+    vec4 stored = polynomials[ray.hit_slot].center_trust;
+    uint object = polynomials[ray.hit_slot].object;
+    vec3 from_stored = hit.position - stored.xyz;
+
+    Rows near = rows_around(hit.position, sqrt(dot3(from_stored, from_stored)));
+    FitOutcome nearest = outcomes[nearest_slot(near, hit.position, ray.hit_slot)];
+    float h = nearest.feature_size;
+    Rows rows = rows_around(hit.position, REACH * h);
+    uint kind;
+    Polynomial p = fit_at(rows, hit.position, h, nearest.trust, object, kind);
+
+    bool settled = abs(p.gradient_offset.w) <= objects[object].tolerance * h;
+    float t = settled ? hit.t : intersect(ray.origin, ray.direction, p);
+    vec3 y, normal;
+    surface_at(ray.origin, ray.direction, t < NO_HIT ? t : hit.t, p, y, normal);
+    vec3 x = settled ? hit.position : hit.position + y;
+    from_stored = x - stored.xyz;
+    bool inside = t < NO_HIT && dot3(from_stored, from_stored) <= stored.w * stored.w;
+    bool affordable = near.count > 0u && rows.count > 0u;
+    bool keeps = kind != FIT_NO_SURFACE && inside;
+    uint iterations = bitfieldExtract(hit.status, HIT_STATUS_BITS, HIT_STATUS_BITS) + 1u;
+    uint counted = hit.status + (1u << HIT_STATUS_BITS) + (1u << HIT_TOTAL_SHIFT) - HIT_PENDING;
+    bool last = settled || (iterations >= objects[object].max_iterations);
+    uint status = keeps ? (last ? HIT_ACCEPTED : HIT_PENDING) : HIT_REJECTED;
+    hits[at] = affordable ? Hit(x, t, normal, counted + status)
+                          : Hit(hit.position, hit.t, hit.normal, hit.status - HIT_PENDING + HIT_ACCEPTED);
+    if (affordable && status == HIT_PENDING) atomicAdd(live, 1u);
+    if (affordable && status == HIT_REJECTED) atomicAdd(rejected, 1u);
+}

@@ -1,0 +1,42 @@
+// surface_hit: where each ray that has ended met the polynomial it hit.
+//
+// reads   the ray state, polynomials, objects
+// writes  hits             accepted, or pending where the object's hits are refined; a hit that stands
+//                          already is left alone; must be zero before the first time
+//         live             how many are pending
+// runs    one invocation per pixel of the tile
+// twin    crates/reference/src/surface_hit.rs
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define STATE_READS
+#include "layout.glsl"
+#include "polynomial.glsl"
+#include "state.glsl"
+#include "index.glsl"
+
+layout(local_size_x = TILE_GROUP) in;
+layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
+layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
+layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
+layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
+layout(push_constant) uniform Push { TraceParams params; };
+
+void main() {
+    uvec2 pixel = tile_pixel();
+    if (any(greaterThanEqual(pixel, params.tile_size))) return;
+    uint at = pixel.y * params.tile_size.x + pixel.x;
+    uint status = hits[at].status;
+    if (bitfieldExtract(status, 0, HIT_STATUS_BITS) == HIT_ACCEPTED) return;
+    Ray ray = load_ray(ivec2(pixel));
+    uint iterations = status >> HIT_TOTAL_SHIFT << HIT_TOTAL_SHIFT;
+    if (ray.hit_slot == NONE) {
+        hits[at].status = iterations | HIT_NONE;
+        return;
+    }
+    Polynomial p = polynomials[ray.hit_slot];
+    vec3 y, normal;
+    surface_at(ray.origin, ray.direction, ray.hit_t, p, y, normal);
+    bool refined = objects[p.object].max_iterations > 0u;
+    hits[at] = Hit(p.center_trust.xyz + y, ray.hit_t, normal, iterations | (refined ? HIT_PENDING : HIT_ACCEPTED));
+    if (refined) atomicAdd(live, 1u);
+}
