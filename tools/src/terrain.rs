@@ -1,16 +1,16 @@
 //! Rolling land with a ring of hills around it, y up.
 //!
 //! The points lie on a golden-angle spiral in the ground plane: evenly within `NEAR`, and with a
-//! density that falls with the cube of the distance beyond. Seen from somewhere above the middle, the
-//! ground that one pixel covers grows in the same way, so each pixel gets about as many points.
+//! density that falls as distance^-2.5 beyond: nearly as fast as the ground that a pixel covers
+//! grows, seen from somewhere above the middle.
 
 use crate::color::{mix, oklch};
 use crate::sphere::{GOLDEN_TURN, turn};
 use crate::vector::Vector;
 
 /// Where the density begins to fall, and where the land ends.
-const NEAR: f64 = 5.0;
-const FAR: f64 = 34.0;
+const NEAR: f64 = 4.0;
+const FAR: f64 = 30.0;
 
 /// Waves of the ground: wave vector, amplitude, phase.
 type Wave = ([f64; 2], f64, f64);
@@ -20,12 +20,8 @@ const SWELL: [Wave; 4] = [
     ([1.9, -0.5], 0.05, 4.1),
     ([0.6, 2.5], 0.035, 2.6),
 ];
-const HILLS: [Wave; 4] = [
-    ([0.17, 0.06], 1.0, 0.9),
-    ([-0.08, 0.21], 0.8, 2.2),
-    ([0.31, -0.12], 0.55, 5.0),
-    ([0.22, 0.37], 0.35, 0.4),
-];
+const HILLS: [Wave; 3] =
+    [([0.16, 0.06], 0.9, 0.9), ([-0.08, 0.19], 0.7, 2.2), ([0.24, -0.13], 0.4, 5.0)];
 
 fn waves(waves: &[Wave], x: f64, z: f64) -> f64 {
     waves.iter().map(|&(k, amplitude, phase)| amplitude * (k[0] * x + k[1] * z + phase).sin()).sum()
@@ -39,7 +35,7 @@ fn smooth_step(from: f64, to: f64, value: f64) -> f64 {
 
 /// How much of the ring of hills there is.
 fn ring(distance: f64) -> f64 {
-    smooth_step(5.0, 22.0, distance) * (1.0 - 0.7 * smooth_step(24.0, FAR, distance))
+    smooth_step(5.0, 20.0, distance) * (1.0 - 0.5 * smooth_step(20.0, FAR, distance))
 }
 
 /// Height of the ground.
@@ -61,16 +57,16 @@ fn color(x: f64, z: f64) -> [f64; 3] {
 
 /// `count` points of the land, with their colours.
 pub fn points(count: u32) -> Vec<(Vector, [f64; 3])> {
-    // Points within r, as a multiple of those within NEAR: (r / NEAR)² up to there, beyond it
-    // 1 + 2 (1 - NEAR / r), the integral of a density that falls as 1 / r³.
-    let all = 1.0 + 2.0 * (1.0 - NEAR / FAR);
+    // Points within r, as a multiple of those within NEAR: (r / NEAR)^2 up to there, beyond it
+    // 1 + 4 (1 - sqrt(NEAR / r)), the integral of a density that falls as r^-2.5.
+    let all = 1.0 + 4.0 * (1.0 - (NEAR / FAR).sqrt());
     (0..count)
         .map(|i| {
             let within = all * (f64::from(i) + 0.5) / f64::from(count);
             let distance = if within <= 1.0 {
                 NEAR * within.sqrt()
             } else {
-                NEAR / (1.0 - 0.5 * (within - 1.0))
+                NEAR / (1.0 - 0.25 * (within - 1.0)).powi(2)
             };
             let (sin, cos) = turn(f64::from(i) * GOLDEN_TURN).sin_cos();
             let [x, z] = [distance * cos, distance * sin];
