@@ -88,9 +88,7 @@ void main() {
     n = normalize3(n);
     vec3 v = cross3(n, u);
 
-    NormalEquations eq;
-    for (int a = 0; a < 21; ++a) eq.matrix[a] = 0.0;
-    for (int a = 0; a < UNKNOWNS; ++a) eq.right[a] = 0.0;
+    NormalEquations eq = no_samples();
     add_sample(eq, 0.0, 0.0, 0.0, 1.0);
     for (uint j = 0u; j < count; ++j) {
         vec3 y = neighbor_offset(list, j, center) * inverse_h;

@@ -3,7 +3,7 @@
 //
 // reads   the ray state, grid, polynomials, objects
 //         outcomes         h and b of each point
-//         offsets, slots   the points of each cell, each point once
+//         offsets, points  the points of each cell, each point once
 // writes  hits             projected, and accepted, rejected, or pending still
 //         live             how many are pending still
 //         rejected         how many are rejected
@@ -33,7 +33,7 @@ layout(std430, binding = TRACE_LIVE) buffer Live { uint live; uint rejected; };
 layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
 layout(std430, binding = REFINE_OFFSETS) readonly buffer Offsets { uint offsets[]; };
-layout(std430, binding = REFINE_SLOTS) readonly buffer Slots { uint slots[]; };
+layout(std430, binding = REFINE_POINTS) readonly buffer Points { ListedPoint points[]; };
 layout(std430, binding = REFINE_OUTCOMES) readonly buffer Outcomes { FitOutcome outcomes[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 
@@ -68,35 +68,52 @@ Rows rows_around(vec3 x, float radius) {
     return rows;
 }
 
+bool belongs(uint slot, uint object) {
+    return slot - objects[object].first_slot < objects[object].slot_count;
+}
+
 // The object's point nearest to x; the stored one is near (ties: the lower index).
 uint nearest_slot(Rows rows, vec3 x, uint stored) {
     uint object = polynomials[stored].object;
-    uint best = stored, best_index = polynomials[stored].index;
+    uint best = stored;
     vec3 to_stored = polynomials[stored].center_trust.xyz - x;
     float best_square = dot3(to_stored, to_stored);
     for (uint row = 0u; row < rows.count; ++row) {
         uvec2 range = row_range(rows, row);
         for (uint i = range.x; i < range.y; ++i) {
-            uint slot = slots[i];
-            uint index = polynomials[slot].index;
-            vec3 y = polynomials[slot].center_trust.xyz - x;
+            ListedPoint point = points[i];
+            vec3 y = point.position - x;
             float square = dot3(y, y);
-            bool nearer = square < best_square || (square == best_square && index < best_index);
-            bool better = nearer && polynomials[slot].object == object;
-            best = better ? slot : best;
-            best_index = better ? index : best_index;
+            bool ties = square == best_square;
+            bool nearer = square < best_square || (ties && polynomials[point.slot].index < polynomials[best].index);
+            bool better = nearer && belongs(point.slot, object);
+            best = better ? point.slot : best;
             best_square = better ? square : best_square;
         }
     }
     return best;
 }
 
-// A neighbour's place in units of h, and its weight; 0 beyond the reach and for other objects.
-vec4 weighted_neighbor(uint slot, vec3 x, float inverse_h, uint object) {
-    vec3 y = (polynomials[slot].center_trust.xyz - x) * inverse_h;
-    float square = dot3(y, y);
-    bool counts = square <= REACH * REACH && polynomials[slot].object == object;
-    return vec4(y, counts ? exp_negative(-square) : 0.0);
+#define BATCH 32u // points tested before any is added up: one bit each
+
+// Which of the points from `first` on, up to 32 of them, lie within reach: their places and weights
+// are then computed by `neighbor`.
+uint within_reach(uint first, uint end, vec3 x, float inverse_h, uint object) {
+    uint inside = 0u;
+    uint count = min(end - first, BATCH);
+    for (uint j = 0u; j < count; ++j) {
+        ListedPoint point = points[first + j];
+        vec3 y = (point.position - x) * inverse_h;
+        bool counts = dot3(y, y) <= REACH * REACH && belongs(point.slot, object);
+        inside |= counts ? 1u << j : 0u;
+    }
+    return inside;
+}
+
+// A neighbour's place in units of h, and its weight.
+vec4 neighbor(uint i, vec3 x, float inverse_h) {
+    vec3 y = (points[i].position - x) * inverse_h;
+    return vec4(y, exp_negative(-dot3(y, y)));
 }
 
 // The polynomial fitted at x over the plane of its neighbourhood; kind FIT_NO_SURFACE where there is
@@ -107,13 +124,17 @@ Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, out uint
     vec3 sum = vec3(0.0), diagonal = vec3(0.0), off = vec3(0.0);
     for (uint row = 0u; row < rows.count; ++row) {
         uvec2 range = row_range(rows, row);
-        for (uint i = range.x; i < range.y; ++i) {
-            vec4 neighbor = weighted_neighbor(slots[i], x, inverse_h, object);
-            vec3 y = neighbor.xyz, wy = neighbor.w * neighbor.xyz;
-            total += neighbor.w;
-            sum += wy;
-            diagonal += wy * y;
-            off += vec3(wy.x * y.y, wy.x * y.z, wy.y * y.z);
+        for (uint first = range.x; first < range.y; first += BATCH) {
+            uint inside = within_reach(first, range.y, x, inverse_h, object);
+            while (inside != 0u) {
+                vec4 yw = neighbor(first + uint(findLSB(inside)), x, inverse_h);
+                inside &= inside - 1u;
+                vec3 y = yw.xyz, wy = yw.w * yw.xyz;
+                total += yw.w;
+                sum += wy;
+                diagonal += wy * y;
+                off += vec3(wy.x * y.y, wy.x * y.z, wy.y * y.z);
+            }
         }
     }
     vec3 mean = sum / max(total, 1e-30);
@@ -124,15 +145,16 @@ Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, out uint
     n = normalize3(n);
     vec3 v = cross3(n, u);
 
-    NormalEquations eq;
-    for (int a = 0; a < 21; ++a) eq.matrix[a] = 0.0;
-    for (int a = 0; a < UNKNOWNS; ++a) eq.right[a] = 0.0;
+    NormalEquations eq = no_samples();
     for (uint row = 0u; row < rows.count; ++row) {
         uvec2 range = row_range(rows, row);
-        for (uint i = range.x; i < range.y; ++i) {
-            vec4 neighbor = weighted_neighbor(slots[i], x, inverse_h, object);
-            vec3 y = neighbor.xyz;
-            if (neighbor.w > 0.0) add_sample(eq, dot3(y, u), dot3(y, v), dot3(y, n), neighbor.w);
+        for (uint first = range.x; first < range.y; first += BATCH) {
+            uint inside = within_reach(first, range.y, x, inverse_h, object);
+            while (inside != 0u) {
+                vec4 yw = neighbor(first + uint(findLSB(inside)), x, inverse_h);
+                inside &= inside - 1u;
+                add_sample(eq, dot3(yw.xyz, u), dot3(yw.xyz, v), dot3(yw.xyz, n), yw.w);
+            }
         }
     }
     bool spans_plane = values.y > COLLINEAR * values.z;

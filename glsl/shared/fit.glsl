@@ -27,12 +27,12 @@ bool within_limits(float c[6]) {
 // Coefficients A B C E F D of the first kind, from `kind` down, that is not singular; returns it.
 uint fit_coefficients(NormalEquations eq, uint kind, uint distinct, out float c[6]) {
     bool found = false;
-    for (int a = 0; a < UNKNOWNS; ++a) c[a] = 0.0;
+    c = float[6](0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     while (kind != FIT_NO_SURFACE && !found) {
         float solution[6];
         bool regular = solve(eq, kind, solution);
         found = regular && enough_points(kind, distinct) && within_limits(solution);
-        for (int a = 0; a < UNKNOWNS; ++a) c[a] = found ? solution[a] : 0.0;
+        if (found) c = solution;
         kind = found ? kind : kind - 1u;
     }
     return kind;

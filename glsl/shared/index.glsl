@@ -3,9 +3,10 @@
 #define INDEX_GLSL
 #include "layout.glsl"
 
-// Lists longer than one axis of a dispatch may be are spread over two.
+// Lists longer than one axis of a dispatch may be are spread over rows of LINE_ROW. Not by
+// gl_NumWorkGroups: lavapipe 22.3.6 gives wrong values for it past the first row.
 uint list_index() {
-    return gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * gl_WorkGroupSize.x) + gl_GlobalInvocationID.x;
+    return gl_GlobalInvocationID.y * LINE_ROW + gl_GlobalInvocationID.x;
 }
 
 // A workgroup covers 8 x 8 pixels, each run of eight invocations 4 x 2 of them: rays that run

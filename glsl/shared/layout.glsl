@@ -10,6 +10,7 @@
 #define NONE 0xffffffffu // no slot, no colour, no object; a ray's cell once the ray is done
 
 #define LINE_GROUP 64 // invocations a workgroup of every kernel that runs along a list
+#define LINE_ROW 1048576 // invocations a row of such a kernel, where one row is not enough
 #define TILE_GROUP 64 // invocations a workgroup of every kernel that runs over pixels, 8 x 8 of them
 #define RUN_LENGTH 256 // entries that one invocation of the scan and sort kernels walks
 #define DIGIT_BITS 8 // bits of a key sorted in one round
@@ -44,6 +45,9 @@
 #define OFFSETS_INFO 0
 #define OFFSETS_KEYS 1
 #define OFFSETS_OUT 2
+#define OFFSETS_SLOTS 3
+#define OFFSETS_POLYNOMIALS 4
+#define OFFSETS_POINTS 5
 
 // the kernels that run over pixels: the ray state, four images, and four more to write
 #define STATE_IN 0   // then 1, 2, 3
@@ -59,7 +63,7 @@
 #define SHADE_FILM 16
 #define TRACE_HITS 17
 #define REFINE_OFFSETS 18
-#define REFINE_SLOTS 19
+#define REFINE_POINTS 19
 #define REFINE_OUTCOMES 20
 
 // What has become of a pixel's hit: the low byte of Hit.status.
@@ -82,6 +86,12 @@
 struct Point {           // 16 bytes
     vec3 position;       //  0  centred scene space
     uint index;          // 12  place in its file
+};
+
+// A point in the list of its cell.
+struct ListedPoint {     // 16 bytes
+    vec3 position;       //  0  centred scene space
+    uint slot;           // 12
 };
 
 // The surface near one point: with y = x - center,
@@ -163,13 +173,17 @@ struct ShadeParams {     // 40 bytes
     uvec2 tile_size;     // 32
 };
 
-struct ObjectInfo {      // 32 bytes
+struct ObjectInfo {      // 48 bytes
     vec3 albedo;         //  0
     uint first_color;    // 12  in colors, or NONE: albedo counts
     uint first_slot;     // 16
     uint polynomial;     // 20  FIT_FULL or FIT_INCOMPLETE: what refinement fits first
     uint max_iterations; // 24  of the refinement; 0: hits are taken as they are
     float tolerance;     // 28  of the refinement, over h
+    uint slot_count;     // 32
+    uint pad0;           // 36
+    uint pad1;           // 40
+    uint pad2;           // 44
 };
 
 struct Light {           // 32 bytes

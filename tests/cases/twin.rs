@@ -108,6 +108,13 @@ fn degenerate_sets_are_the_same_to_the_bit() {
     }
 }
 
+/// More pairs of cell and point than one row of a dispatch has invocations.
+#[test]
+fn lists_longer_than_a_row_of_a_dispatch_are_the_same_to_the_bit() {
+    let large = check("large", "[image]\nsize = [96, 64]", fibonacci_sphere(260_000));
+    assert!(large.slots.len() > 1 << 20, "{} pairs", large.slots.len());
+}
+
 /// Half of a file's points are no numbers: they are dropped and counted, the rest is the same to the
 /// bit, and indices are places in the file.
 #[test]

@@ -48,6 +48,8 @@ constants! {
     NONE = 0xffff_ffff;
     /// Invocations a workgroup of kernels that run along a list.
     LINE_GROUP = 64;
+    /// Invocations a row of such a kernel, where one row is not enough.
+    LINE_ROW = 1_048_576;
     /// Invocations a workgroup of kernels that run over 8 × 8 pixels.
     TILE_GROUP = 64;
     /// Entries that one invocation of the scan and sort kernels walks.
@@ -96,6 +98,12 @@ constants! {
     OFFSETS_KEYS = 1;
     /// Binding of `cell_offsets`: first entry of each cell.
     OFFSETS_OUT = 2;
+    /// Binding of `list_points`: slots, cell after cell.
+    OFFSETS_SLOTS = 3;
+    /// Binding of `list_points`: polynomials.
+    OFFSETS_POLYNOMIALS = 4;
+    /// Binding of `list_points`: [`ListedPoint`]s, cell after cell.
+    OFFSETS_POINTS = 5;
     /// First of the four bindings of the ray state read.
     STATE_IN = 0;
     /// First of the four bindings of the ray state written.
@@ -122,8 +130,8 @@ constants! {
     TRACE_HITS = 17;
     /// Binding of `refine`: first entry of each cell among the points.
     REFINE_OFFSETS = 18;
-    /// Binding of `refine`: points, cell after cell.
-    REFINE_SLOTS = 19;
+    /// Binding of `refine`: [`ListedPoint`]s, cell after cell.
+    REFINE_POINTS = 19;
     /// Binding of `refine`: [`FitOutcome`]s.
     REFINE_OUTCOMES = 20;
     /// A pixel that hit nothing.
@@ -163,6 +171,17 @@ pub struct Point {
     pub index: u32,
 }
 gpu_layout!(Point, 16, { position: 0, index: 12 });
+
+/// A point in the list of its cell.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ListedPoint {
+    /// Centred scene space.
+    pub position: [f32; 3],
+    /// Its slot.
+    pub slot: u32,
+}
+gpu_layout!(ListedPoint, 16, { position: 0, slot: 12 });
 
 /// The surface near one point, in world form: with y = x − center,
 /// gradient · y − offset − yᵀ M y = 0 where |y| ≤ trust (\[T\] §4; method, section 1).
@@ -363,9 +382,18 @@ pub struct ObjectInfo {
     pub max_iterations: u32,
     /// Of the refinement, over h.
     pub tolerance: f32,
+    /// Slots of the object.
+    pub slot_count: u32,
+    /// Unused.
+    pub pad0: u32,
+    /// Unused.
+    pub pad1: u32,
+    /// Unused.
+    pub pad2: u32,
 }
-gpu_layout!(ObjectInfo, 32, {
+gpu_layout!(ObjectInfo, 48, {
     albedo: 0, first_color: 12, first_slot: 16, polynomial: 20, max_iterations: 24, tolerance: 28,
+    slot_count: 32, pad0: 36, pad1: 40, pad2: 44,
 });
 
 /// One light.
@@ -416,6 +444,7 @@ gpu_layout!(FilmPixel, 64, { color: 0, position_depth: 16, normal_object: 32, co
 /// Every struct that host and kernels share.
 pub const STRUCTS: &[StructLayout] = &[
     Point::LAYOUT,
+    ListedPoint::LAYOUT,
     Polynomial::LAYOUT,
     FitOutcome::LAYOUT,
     FitParams::LAYOUT,

@@ -40,6 +40,8 @@ modules! {
     grid_trace,
     /// The same, reading polynomials through a uniform texel buffer.
     grid_trace_texels,
+    /// The points of each cell with their positions.
+    list_points,
     /// One iteration of each pending hit towards the point set surface.
     refine,
     /// Sends rays whose hit was refined away on to the next.

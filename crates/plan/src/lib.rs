@@ -304,6 +304,10 @@ fn object_infos(
                 Refine::None => 0.0,
                 Refine::Project { tolerance, .. } => tolerance as f32,
             },
+            slot_count: cloud.objects[index].count,
+            pad0: 0,
+            pad1: 0,
+            pad2: 0,
         });
         if let Some(own) = own {
             colors.extend(cloud.by_slot(index, own).iter().flatten());

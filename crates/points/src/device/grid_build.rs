@@ -9,7 +9,8 @@ use crate::BALL_MARGIN;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
     GRID_CELLS, GRID_INFO, GRID_KEYS, GRID_OFFSETS, GRID_ORDER, GRID_POLYNOMIALS, GRID_SLOTS,
-    GridInfo, GridParams, OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT,
+    GridInfo, GridParams, ListedPoint, OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT, OFFSETS_POINTS,
+    OFFSETS_POLYNOMIALS, OFFSETS_SLOTS,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -35,6 +36,7 @@ pub(crate) struct GridBuild {
     emit: Kernel,
     ranges: Kernel,
     offsets: Kernel,
+    list_points: Kernel,
     scan: Scan,
     sort: Sort,
 }
@@ -51,12 +53,14 @@ impl GridBuild {
             [GRID_INFO, GRID_POLYNOMIALS, GRID_ORDER, GRID_OFFSETS, GRID_KEYS, GRID_SLOTS];
         let ranged = [GRID_INFO, GRID_KEYS, GRID_CELLS];
         let offset = [OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT];
+        let listed = [OFFSETS_SLOTS, OFFSETS_POLYNOMIALS, OFFSETS_POINTS];
         Ok(Self {
             device: Arc::clone(device),
             count: kernel("grid_count", &spirv::grid_count(), &counted)?,
             emit: kernel("grid_emit", &spirv::grid_emit(), &emitted)?,
             ranges: kernel("grid_ranges", &spirv::grid_ranges(), &ranged)?,
             offsets: kernel("cell_offsets", &spirv::cell_offsets(), &offset)?,
+            list_points: kernel("list_points", &spirv::list_points(), &listed)?,
             scan: Scan::new(device)?,
             sort: Sort::new(device)?,
         })
@@ -96,8 +100,16 @@ impl GridBuild {
             .buffer(OFFSETS_OUT, &offsets)
             .push(&params)
             .dispatch(line(entries));
+        let bytes = u64::from(params.pair_count) * size_of::<ListedPoint>() as u64;
+        let points = Buffer::new(&self.device, "listed points", bytes)?;
+        rec.pass("list_points", &self.list_points)
+            .buffer(OFFSETS_SLOTS, &pairs.slots)
+            .buffer(OFFSETS_POLYNOMIALS, io.polynomials)
+            .buffer(OFFSETS_POINTS, &points)
+            .push(&params)
+            .dispatch(line(params.pair_count));
         rec.submit()?;
-        Ok(Some(PointCells { offsets, slots: pairs.slots }))
+        Ok(Some(PointCells { offsets, points }))
     }
 
     /// Pairs of cell and point, sorted by cell; the sort is recorded and not yet submitted. `None`

@@ -12,7 +12,7 @@ use crate::{Cloud, NeighborSearch, Watch, plan_grid};
 use fit::FitPolynomials;
 use gpu::{Buffer, Device, GpuError, Recorder};
 use grid_build::{GridBuild, GridBuildIo};
-use kernels::layout::{FitOutcome, FitParams, GridInfo, Polynomial};
+use kernels::layout::{FitOutcome, FitParams, GridInfo, LINE_ROW, Polynomial};
 use std::sync::Arc;
 
 /// Points whose neighbours are listed and fitted in one go: 8 MiB of lists at k = 16.
@@ -42,10 +42,12 @@ pub struct Surfaces {
 /// The points of each cell, each point once.
 #[derive(Debug)]
 pub struct PointCells {
-    /// First entry of each cell in `slots`, and one behind the last.
+    /// First entry of each cell in `points`, and one behind the last.
     pub offsets: Buffer,
-    /// Slots, cell after cell.
-    pub slots: Buffer,
+    /// [`ListedPoint`]s, cell after cell.
+    ///
+    /// [`ListedPoint`]: kernels::layout::ListedPoint
+    pub points: Buffer,
 }
 
 /// Why surfaces could not be built.
@@ -107,7 +109,7 @@ impl Surfaces {
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let listed = |cells: &PointCells| {
-            cells.offsets.bytes() + cells.slots.bytes() + self.outcome_buffer.bytes()
+            cells.offsets.bytes() + cells.points.bytes() + self.outcome_buffer.bytes()
         };
         let refinement = self.point_cells.as_ref().map_or(0, listed);
         self.polynomials.bytes() + self.cells.bytes() + self.slots.bytes() + refinement
@@ -159,8 +161,7 @@ fn fit_all(
     Ok((read, outcomes))
 }
 
-/// Invocations for a list of `count` entries: over two axes where one would be too long.
+/// Invocations for a list of `count` entries: over rows where one axis would be too short.
 pub(crate) fn line(count: u32) -> [u32; 3] {
-    const ROW: u32 = 1 << 20;
-    if count <= ROW { [count, 1, 1] } else { [ROW, count.div_ceil(ROW), 1] }
+    [count.min(LINE_ROW), count.div_ceil(LINE_ROW), 1]
 }

@@ -4,7 +4,7 @@ use super::{bind_state, over_pixels, state_bindings};
 use crate::state::{RayState, StateImages};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    REFINE_OFFSETS, REFINE_OUTCOMES, REFINE_SLOTS, SHADE_OBJECTS, STATE_IN, STATE_OUT, TRACE_HITS,
+    REFINE_OFFSETS, REFINE_OUTCOMES, REFINE_POINTS, SHADE_OBJECTS, STATE_IN, STATE_OUT, TRACE_HITS,
     TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS, TraceParams,
 };
 use kernels::spirv;
@@ -43,7 +43,7 @@ impl Refine {
             SHADE_OBJECTS,
             TRACE_HITS,
             REFINE_OFFSETS,
-            REFINE_SLOTS,
+            REFINE_POINTS,
             REFINE_OUTCOMES,
         ];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
@@ -65,7 +65,7 @@ impl Refine {
             .buffer(SHADE_OBJECTS, io.objects)
             .buffer(TRACE_HITS, io.hits)
             .buffer(REFINE_OFFSETS, &io.point_cells.offsets)
-            .buffer(REFINE_SLOTS, &io.point_cells.slots)
+            .buffer(REFINE_POINTS, &io.point_cells.points)
             .buffer(REFINE_OUTCOMES, &io.surfaces.outcome_buffer)
             .push(params)
             .dispatch(over_pixels(params.tile_size));

@@ -1,0 +1,23 @@
+// list_points: the points of each cell with their positions, so that refinement reads them in a row.
+//
+// reads   slots            cell after cell
+//         polynomials
+// writes  points           in the order of slots
+// runs    one invocation per entry of slots
+// twin    crates/reference/src/grid_build.rs
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "layout.glsl"
+#include "index.glsl"
+
+layout(local_size_x = LINE_GROUP) in;
+layout(std430, binding = OFFSETS_SLOTS) readonly buffer Slots { uint slots[]; };
+layout(std430, binding = OFFSETS_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
+layout(std430, binding = OFFSETS_POINTS) writeonly buffer Points { ListedPoint points[]; };
+layout(push_constant) uniform Push { GridParams params; };
+
+void main() {
+    uint i = list_index();
+    if (i >= params.pair_count) return;
+    points[i] = ListedPoint(polynomials[slots[i]].center_trust.xyz, slots[i]);
+}
