@@ -33,9 +33,23 @@ layout(std430, binding = TRACE_LIVE) buffer Live { uint live; uint rejected; };
 layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
 layout(std430, binding = REFINE_OFFSETS) readonly buffer Offsets { uint offsets[]; };
-layout(std430, binding = REFINE_POINTS) readonly buffer Points { ListedPoint points[]; };
 layout(std430, binding = REFINE_OUTCOMES) readonly buffer Outcomes { FitOutcome outcomes[]; };
 layout(push_constant) uniform Push { TraceParams params; };
+
+#ifdef RECORDS_AS_TEXELS // as in records.glsl
+layout(binding = REFINE_POINTS) uniform usamplerBuffer points;
+
+ListedPoint listed_point(uint i) {
+    uvec4 texel = texelFetch(points, int(i));
+    return ListedPoint(uintBitsToFloat(texel.xyz), texel.w);
+}
+#else
+layout(std430, binding = REFINE_POINTS) readonly buffer Points { ListedPoint points[]; };
+
+ListedPoint listed_point(uint i) {
+    return points[i];
+}
+#endif
 
 #define REACH 3.0        // of the weights, over h
 #define MAX_ROWS 1024u   // of cells that a neighbourhood may span
@@ -68,25 +82,25 @@ Rows rows_around(vec3 x, float radius) {
     return rows;
 }
 
-bool belongs(uint slot, uint object) {
-    return slot - objects[object].first_slot < objects[object].slot_count;
+// Slots of one object: the first, and how many.
+bool belongs(uint slot, uvec2 slots) {
+    return slot - slots.x < slots.y;
 }
 
 // The object's point nearest to x; the stored one is near (ties: the lower index).
-uint nearest_slot(Rows rows, vec3 x, uint stored) {
-    uint object = polynomials[stored].object;
+uint nearest_slot(Rows rows, vec3 x, uint stored, uvec2 slots) {
     uint best = stored;
     vec3 to_stored = polynomials[stored].center_trust.xyz - x;
     float best_square = dot3(to_stored, to_stored);
     for (uint row = 0u; row < rows.count; ++row) {
         uvec2 range = row_range(rows, row);
         for (uint i = range.x; i < range.y; ++i) {
-            ListedPoint point = points[i];
+            ListedPoint point = listed_point(i);
             vec3 y = point.position - x;
             float square = dot3(y, y);
             bool ties = square == best_square;
             bool nearer = square < best_square || (ties && polynomials[point.slot].index < polynomials[best].index);
-            bool better = nearer && belongs(point.slot, object);
+            bool better = nearer && belongs(point.slot, slots);
             best = better ? point.slot : best;
             best_square = better ? square : best_square;
         }
@@ -98,13 +112,13 @@ uint nearest_slot(Rows rows, vec3 x, uint stored) {
 
 // Which of the points from `first` on, up to 32 of them, lie within reach: their places and weights
 // are then computed by `neighbor`.
-uint within_reach(uint first, uint end, vec3 x, float inverse_h, uint object) {
+uint within_reach(uint first, uint end, vec3 x, float inverse_h, uvec2 slots) {
     uint inside = 0u;
     uint count = min(end - first, BATCH);
     for (uint j = 0u; j < count; ++j) {
-        ListedPoint point = points[first + j];
+        ListedPoint point = listed_point(first + j);
         vec3 y = (point.position - x) * inverse_h;
-        bool counts = dot3(y, y) <= REACH * REACH && belongs(point.slot, object);
+        bool counts = dot3(y, y) <= REACH * REACH && belongs(point.slot, slots);
         inside |= counts ? 1u << j : 0u;
     }
     return inside;
@@ -112,20 +126,20 @@ uint within_reach(uint first, uint end, vec3 x, float inverse_h, uint object) {
 
 // A neighbour's place in units of h, and its weight.
 vec4 neighbor(uint i, vec3 x, float inverse_h) {
-    vec3 y = (points[i].position - x) * inverse_h;
+    vec3 y = (listed_point(i).position - x) * inverse_h;
     return vec4(y, exp_negative(-dot3(y, y)));
 }
 
 // The polynomial fitted at x over the plane of its neighbourhood; kind FIT_NO_SURFACE where there is
 // none.
-Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, out uint kind) {
+Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, uvec2 slots, out uint kind) {
     float inverse_h = 1.0 / h;
     float total = 0.0;
     vec3 sum = vec3(0.0), diagonal = vec3(0.0), off = vec3(0.0);
     for (uint row = 0u; row < rows.count; ++row) {
         uvec2 range = row_range(rows, row);
         for (uint first = range.x; first < range.y; first += BATCH) {
-            uint inside = within_reach(first, range.y, x, inverse_h, object);
+            uint inside = within_reach(first, range.y, x, inverse_h, slots);
             while (inside != 0u) {
                 vec4 yw = neighbor(first + uint(findLSB(inside)), x, inverse_h);
                 inside &= inside - 1u;
@@ -149,7 +163,7 @@ Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, out uint
     for (uint row = 0u; row < rows.count; ++row) {
         uvec2 range = row_range(rows, row);
         for (uint first = range.x; first < range.y; first += BATCH) {
-            uint inside = within_reach(first, range.y, x, inverse_h, object);
+            uint inside = within_reach(first, range.y, x, inverse_h, slots);
             while (inside != 0u) {
                 vec4 yw = neighbor(first + uint(findLSB(inside)), x, inverse_h);
                 inside &= inside - 1u;
@@ -172,14 +186,15 @@ void main() {
     Ray ray = load_ray(ivec2(pixel));
     vec4 stored = polynomials[ray.hit_slot].center_trust;
     uint object = polynomials[ray.hit_slot].object;
+    uvec2 slots = uvec2(objects[object].first_slot, objects[object].slot_count);
     vec3 from_stored = hit.position - stored.xyz;
 
     Rows near = rows_around(hit.position, sqrt(dot3(from_stored, from_stored)));
-    FitOutcome nearest = outcomes[nearest_slot(near, hit.position, ray.hit_slot)];
+    FitOutcome nearest = outcomes[nearest_slot(near, hit.position, ray.hit_slot, slots)];
     float h = nearest.feature_size;
     Rows rows = rows_around(hit.position, REACH * h);
     uint kind;
-    Polynomial p = fit_at(rows, hit.position, h, nearest.trust, object, kind);
+    Polynomial p = fit_at(rows, hit.position, h, nearest.trust, object, slots, kind);
 
     bool settled = abs(p.gradient_offset.w) <= objects[object].tolerance * h;
     float t = settled ? hit.t : intersect(ray.origin, ray.direction, p);

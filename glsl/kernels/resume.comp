@@ -2,8 +2,8 @@
 //
 // reads   the ray state, grid
 //         hits
-// writes  the ray state    every pixel; rejected rays are in the cell of the hit they lost
-// runs    one invocation per pixel of the tile; then the images swap
+// writes  the ray state    rejected rays alone, in place: they are in the cell of the hit they lost
+// runs    one invocation per pixel of the tile
 // twin    crates/reference/src/refine.rs
 //
 // A polynomial that is hit behind that point is listed in the cell of its hit, which no ray has passed
@@ -25,14 +25,13 @@ layout(push_constant) uniform Push { TraceParams params; };
 void main() {
     uvec2 pixel = tile_pixel();
     if (any(greaterThanEqual(pixel, params.tile_size))) return;
-    Ray ray = load_ray(ivec2(pixel));
     uint status = hits[pixel.y * params.tile_size.x + pixel.x].status;
-    if (bitfieldExtract(status, 0, HIT_STATUS_BITS) == HIT_REJECTED) {
-        ray.after = ray.hit_t;
-        ray.hit_t = NO_HIT;
-        ray.hit_slot = NONE;
-        ray.cell = cell_id(grid, cell_of(grid, ray.origin + ray.after * ray.direction));
-        ray.cursor = 0u;
-    }
+    if (bitfieldExtract(status, 0, HIT_STATUS_BITS) != HIT_REJECTED) return;
+    Ray ray = load_ray(ivec2(pixel));
+    ray.after = ray.hit_t;
+    ray.hit_t = NO_HIT;
+    ray.hit_slot = NONE;
+    ray.cell = cell_id(grid, cell_of(grid, ray.origin + ray.after * ray.direction));
+    ray.cursor = 0u;
     store_ray(ivec2(pixel), ray);
 }

@@ -44,6 +44,8 @@ modules! {
     list_points,
     /// One iteration of each pending hit towards the point set surface.
     refine,
+    /// The same, reading points through a uniform texel buffer.
+    refine_texels,
     /// Sends rays whose hit was refined away on to the next.
     resume,
     /// Prefix sums, second half.
@@ -61,8 +63,10 @@ modules! {
 }
 
 /// Modules made of another kernel's source with a macro defined: name, kernel, macro.
-pub const VARIANTS: &[(&str, &str, &str)] =
-    &[("grid_trace_texels", "grid_trace", "RECORDS_AS_TEXELS")];
+pub const VARIANTS: &[(&str, &str, &str)] = &[
+    ("grid_trace_texels", "grid_trace", "RECORDS_AS_TEXELS"),
+    ("refine_texels", "refine", "RECORDS_AS_TEXELS"),
+];
 
 /// The kernel whose source a module is made of, and the macro it is compiled with, if any.
 #[must_use]

@@ -111,7 +111,7 @@ impl Renderer {
             camera_rays: CameraRays::new(device)?,
             grid_trace: GridTrace::new(device, records)?,
             surface_hit: SurfaceHit::new(device)?,
-            refine: Refine::new(device)?,
+            refine: Refine::new(device, records)?,
             shade: Shade::new(device)?,
             recorder: Recorder::new(device)?,
         })
@@ -218,9 +218,8 @@ impl Renderer {
             if self.refine_hits(pending, &params, stats, watch)? == 0 {
                 return Ok(());
             }
-            let (surfaces, state) = (&self.surfaces, &self.state);
+            let (surfaces, state) = (&self.surfaces, &self.state.current);
             self.refine.record_resume(&mut self.recorder, surfaces, state, &self.hits, &params);
-            self.state.swap();
             self.trace_to_the_end(plan, tile, stats, watch)?;
         }
     }

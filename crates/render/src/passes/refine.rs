@@ -1,7 +1,7 @@
 //! The passes `refine` and `resume`.
 
-use super::{bind_state, over_pixels, state_bindings};
-use crate::state::{RayState, StateImages};
+use super::{Records, bind_state, over_pixels, state_bindings};
+use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
     REFINE_OFFSETS, REFINE_OUTCOMES, REFINE_POINTS, SHADE_OBJECTS, STATE_IN, STATE_OUT, TRACE_HITS,
@@ -33,7 +33,7 @@ impl Refine {
     pub const NAME: &'static str = "refine";
     pub const RESUME: &'static str = "resume";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, records: Records) -> Result<Self, GpuError> {
         let params = size_of::<TraceParams>();
         let mut bindings = state_bindings(STATE_IN).to_vec();
         let buffers = [
@@ -43,11 +43,15 @@ impl Refine {
             SHADE_OBJECTS,
             TRACE_HITS,
             REFINE_OFFSETS,
-            REFINE_POINTS,
             REFINE_OUTCOMES,
         ];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
-        let refine = Kernel::new(device, Self::NAME, &spirv::refine(), &bindings, params)?;
+        let (module, points) = match records {
+            Records::Texels => (spirv::refine_texels(), Binding::UniformTexelBuffer),
+            Records::Storage => (spirv::refine(), Binding::StorageBuffer),
+        };
+        bindings.push((REFINE_POINTS, points));
+        let refine = Kernel::new(device, Self::NAME, &module, &bindings, params)?;
         let mut bindings = state_bindings(STATE_IN).to_vec();
         bindings.extend(state_bindings(STATE_OUT));
         let buffers = [TRACE_INFO, TRACE_HITS];
@@ -71,17 +75,17 @@ impl Refine {
             .dispatch(over_pixels(params.tile_size));
     }
 
-    /// Records the way on of rejected rays; the caller then swaps the ray state.
+    /// Records the way on of rejected rays, in place.
     pub fn record_resume(
         &self,
         rec: &mut Recorder,
         surfaces: &Surfaces,
-        state: &RayState,
+        state: &StateImages,
         hits: &Buffer,
         params: &TraceParams,
     ) {
-        let pass = bind_state(rec.pass(Self::RESUME, &self.resume), STATE_IN, &state.current);
-        bind_state(pass, STATE_OUT, &state.next)
+        let pass = bind_state(rec.pass(Self::RESUME, &self.resume), STATE_IN, state);
+        bind_state(pass, STATE_OUT, state)
             .buffer(TRACE_INFO, &surfaces.grid_info)
             .buffer(TRACE_HITS, hits)
             .push(params)
