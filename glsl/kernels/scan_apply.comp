@@ -1,7 +1,7 @@
 // scan_apply: turns each run of values into what comes before each of them, in place.
 //
 // reads   sums             what comes before each run, where params.has_base says so
-// writes  values           the exclusive prefix sum
+// writes  values           the exclusive prefix sum, or SCAN_LIMIT where it would be more
 // runs    one invocation per run
 // twin    crates/reference/src/grid_build.rs (a prefix sum has but one result)
 #version 460
@@ -23,6 +23,6 @@ void main() {
     for (uint i = first; i < end; ++i) {
         uint value = values[i];
         values[i] = before;
-        before += value;
+        before = min(before + min(value, SCAN_LIMIT), SCAN_LIMIT);
     }
 }

@@ -1,4 +1,4 @@
-// scan_reduce: the sum of each run of values.
+// scan_reduce: the sum of each run of values, or SCAN_LIMIT where it would be more.
 //
 // reads   values
 // writes  sums             one a run of RUN_LENGTH values
@@ -20,6 +20,6 @@ void main() {
     if (first >= params.count) return;
     uint end = min(first + RUN_LENGTH, params.count);
     uint sum = 0u;
-    for (uint i = first; i < end; ++i) sum += values[i];
+    for (uint i = first; i < end; ++i) sum = min(sum + min(values[i], SCAN_LIMIT), SCAN_LIMIT);
     sums[run] = sum;
 }

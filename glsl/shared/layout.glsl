@@ -15,6 +15,14 @@
 #define RUN_LENGTH 256 // entries that one invocation of the scan and sort kernels walks
 #define DIGIT_BITS 8 // bits of a key sorted in one round
 
+// disc_count, disc_emit, disc_ranges
+#define DISC_TILE 8 // pixels a screen tile has along each side: those of one workgroup
+#define DISC_POLYNOMIALS 0
+#define DISC_OFFSETS 1
+#define DISC_KEYS 2
+#define DISC_SLOTS 3
+#define DISC_TILES 4
+
 // fit_polynomials
 #define FIT_POINTS 0
 #define FIT_NEIGHBORS 1
@@ -33,6 +41,7 @@
 // scan_reduce, scan_apply
 #define SCAN_VALUES 0
 #define SCAN_SUMS 1
+#define SCAN_LIMIT 0x7fffffffu // sums stop here instead of wrapping
 
 // sort_count, sort_scatter
 #define SORT_KEYS_IN 0
@@ -53,6 +62,7 @@
 #define STATE_IN 0   // then 1, 2, 3
 #define STATE_OUT 4  // then 5, 6, 7
 #define TRACE_INFO 8
+#define TRACE_KEYS 8 // disc_trace, which needs no grid
 #define TRACE_CELLS 9
 #define TRACE_SLOTS 10
 #define TRACE_POLYNOMIALS 11
@@ -163,6 +173,27 @@ struct TraceParams {     // 16 bytes
     uvec2 tile_size;     //  0
     uint cells;          //  8  K: how many cells a ray may cross in this pass
     uint work;           // 12  loop iterations a ray may spend in this pass
+};
+
+// Distances between nearest and farthest, ranked by their bits.
+struct DepthRanks {      // 16 bytes
+    float nearest;       //  0  > 0
+    float farthest;      //  4
+    uint shift;          //  8  of a float's bits, so that the rank has few
+    uint bits;           // 12  of a rank
+};
+
+struct DiscParams {      // 104 bytes
+    CameraParams camera; //  0
+    DepthRanks ranks;    // 80
+    uint point_count;    // 96
+    uint pair_count;     // 100
+};
+
+struct DiscTraceParams { // 28 bytes
+    DepthRanks ranks;    //  0
+    uvec2 tile_size;     // 16
+    uint work;           // 24  loop iterations a ray may spend in this pass
 };
 
 struct ShadeParams {     // 40 bytes

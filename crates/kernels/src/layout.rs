@@ -56,6 +56,18 @@ constants! {
     RUN_LENGTH = 256;
     /// Bits of a key sorted in one round.
     DIGIT_BITS = 8;
+    /// Pixels that a screen tile has along each side.
+    DISC_TILE = 8;
+    /// Binding of the discs' build: polynomials.
+    DISC_POLYNOMIALS = 0;
+    /// Binding of the discs' build: counts, then offsets, by slot.
+    DISC_OFFSETS = 1;
+    /// Binding of the discs' build: screen tile and rank of each pair.
+    DISC_KEYS = 2;
+    /// Binding of the discs' build: the slot of each pair.
+    DISC_SLOTS = 3;
+    /// Binding of the discs' build: first and past-the-last pair of each screen tile.
+    DISC_TILES = 4;
     /// Binding of `fit_polynomials`: every point.
     FIT_POINTS = 0;
     /// Binding of `fit_polynomials`: neighbours of the batch's points.
@@ -82,6 +94,8 @@ constants! {
     SCAN_VALUES = 0;
     /// Binding of the scan: sums of runs, or what comes before each.
     SCAN_SUMS = 1;
+    /// Where sums stop instead of wrapping.
+    SCAN_LIMIT = 0x7fff_ffff;
     /// Binding of the sort: keys to sort.
     SORT_KEYS_IN = 0;
     /// Binding of the sort: what travels with them.
@@ -110,13 +124,15 @@ constants! {
     STATE_OUT = 4;
     /// Binding of the tracing kernels: [`GridInfo`].
     TRACE_INFO = 8;
-    /// Binding of `grid_trace`: range of each cell.
+    /// Binding of `disc_trace`: ranks of the points of the screen tiles.
+    TRACE_KEYS = 8;
+    /// Binding of `grid_trace`: range of each cell; of `disc_trace`: of each screen tile.
     TRACE_CELLS = 9;
-    /// Binding of `grid_trace`: points of the cells.
+    /// Binding of `grid_trace`: points of the cells; of `disc_trace`: of the screen tiles.
     TRACE_SLOTS = 10;
     /// Binding of the tracing kernels: polynomials.
     TRACE_POLYNOMIALS = 11;
-    /// Binding of `grid_trace`: count of live rays.
+    /// Binding of `grid_trace` and `disc_trace`: count of live rays.
     TRACE_LIVE = 12;
     /// Binding of `shade`: [`ObjectInfo`] by object.
     SHADE_OBJECTS = 13;
@@ -347,6 +363,49 @@ pub struct TraceParams {
 }
 gpu_layout!(TraceParams, 16, { tile_size: 0, cells: 8, work: 12 });
 
+/// Distances between nearest and farthest, ranked by their bits.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct DepthRanks {
+    /// Greater than zero; what is nearer has the same rank.
+    pub nearest: f32,
+    /// What is farther has the same rank.
+    pub farthest: f32,
+    /// Of a float's bits, so that the rank has few.
+    pub shift: u32,
+    /// Bits of a rank.
+    pub bits: u32,
+}
+gpu_layout!(DepthRanks, 16, { nearest: 0, farthest: 4, shift: 8, bits: 12 });
+
+/// Push constants of `disc_count`, `disc_emit` and `disc_ranges`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct DiscParams {
+    /// The camera, and the tile of the picture.
+    pub camera: CameraParams,
+    /// How pairs of a screen tile are ordered.
+    pub ranks: DepthRanks,
+    /// Points of the scene.
+    pub point_count: u32,
+    /// Pairs of a screen tile and a point whose disc covers it.
+    pub pair_count: u32,
+}
+gpu_layout!(DiscParams, 104, { camera: 0, ranks: 80, point_count: 96, pair_count: 100 });
+
+/// Push constants of `disc_trace`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct DiscTraceParams {
+    /// How pairs of a screen tile are ordered.
+    pub ranks: DepthRanks,
+    /// Columns and rows of the tile of the picture.
+    pub tile_size: [u32; 2],
+    /// Loop iterations a ray may spend in this pass.
+    pub work: u32,
+}
+gpu_layout!(DiscTraceParams, 28, { ranks: 0, tile_size: 16, work: 24 });
+
 /// Push constants of `shade`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -454,6 +513,9 @@ pub const STRUCTS: &[StructLayout] = &[
     SortParams::LAYOUT,
     CameraParams::LAYOUT,
     TraceParams::LAYOUT,
+    DepthRanks::LAYOUT,
+    DiscParams::LAYOUT,
+    DiscTraceParams::LAYOUT,
     ShadeParams::LAYOUT,
     ObjectInfo::LAYOUT,
     Light::LAYOUT,

@@ -28,6 +28,16 @@ modules! {
     camera_rays,
     /// Where each cell's entries begin.
     cell_offsets,
+    /// Screen tiles that each disc covers.
+    disc_count,
+    /// Pairs of screen tile and point.
+    disc_emit,
+    /// Where each screen tile's points begin and end.
+    disc_ranges,
+    /// The nearest hit among the points of a screen tile.
+    disc_trace,
+    /// The same, reading polynomials through a uniform texel buffer.
+    disc_trace_texels,
     /// The local polynomial of each point.
     fit_polynomials,
     /// Cells around each trust ball.
@@ -64,6 +74,7 @@ modules! {
 
 /// Modules made of another kernel's source with a macro defined: name, kernel, macro.
 pub const VARIANTS: &[(&str, &str, &str)] = &[
+    ("disc_trace_texels", "disc_trace", "RECORDS_AS_TEXELS"),
     ("grid_trace_texels", "grid_trace", "RECORDS_AS_TEXELS"),
     ("refine_texels", "refine", "RECORDS_AS_TEXELS"),
 ];

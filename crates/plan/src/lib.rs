@@ -7,10 +7,12 @@
 
 mod camera;
 mod diagnostic;
+mod discs;
 mod picture;
 
 pub use camera::View;
 pub use diagnostic::Diagnostic;
+pub use discs::{MAX_DISC_PAIRS, screen_tiles};
 pub use picture::Picture;
 
 use kernels::layout::{

@@ -5,6 +5,9 @@
 #![forbid(unsafe_code)]
 
 pub mod camera_rays;
+pub mod disc;
+pub mod disc_bin;
+pub mod disc_trace;
 pub mod eigen;
 pub mod fit;
 pub mod fit_polynomials;
@@ -20,8 +23,11 @@ pub mod shade;
 pub mod surface_hit;
 
 use camera_rays::Ray;
+use disc_bin::{DiscLists, disc_bin};
+use disc_trace::disc_trace;
 use grid::Grid;
 use grid_build::CellLists;
+use grid_trace::grid_trace;
 use kernels::layout::{FilmPixel, FitOutcome, GridInfo};
 use plan::{Picture, Plan, Window};
 use points::{NeighborSearch, Watch, plan_grid};
@@ -107,6 +113,7 @@ impl<R: Real> Reference<R> {
         watch.stage("tracing", plan.window.pixels() as u64);
         let mut done = 0;
         for tile in plan.tiles() {
+            let discs = self.bin_discs(plan, &tile);
             for first in (0..tile.size[1]).step_by(ROWS) {
                 if watch.interrupted() {
                     return None;
@@ -115,7 +122,7 @@ impl<R: Real> Reference<R> {
                     origin: [tile.origin[0], tile.origin[1] + first],
                     size: [tile.size[0], (ROWS as u32).min(tile.size[1] - first)],
                 };
-                picture.put(plan, &self.outcomes, &rows, &self.trace(plan, &rows));
+                picture.put(plan, &self.outcomes, &rows, &self.trace(plan, &rows, discs.as_ref()));
                 done += rows.pixels() as u64;
                 watch.done(done);
             }
@@ -123,9 +130,18 @@ impl<R: Real> Reference<R> {
         Some(picture)
     }
 
-    /// The pixels of one window, row by row.
+    /// The points of each screen tile of a tile of the picture, if it is to be traced by discs and
+    /// they are not too many.
     #[must_use]
-    pub fn trace(&self, plan: &Plan, window: &Window) -> Vec<FilmPixel> {
+    pub fn bin_discs(&self, plan: &Plan, tile: &Window) -> Option<DiscLists> {
+        let params = plan.discs_of(tile, &self.grid);
+        plan.by_discs(tile).then(|| disc_bin(&params, &self.polynomials)).flatten()
+    }
+
+    /// The pixels of one window, row by row; through the grid, or, inside a tile of the picture
+    /// whose discs are given, by them.
+    #[must_use]
+    pub fn trace(&self, plan: &Plan, window: &Window, discs: Option<&DiscLists>) -> Vec<FilmPixel> {
         let grid = Grid::<R>::from(&self.grid);
         let (camera, params) = (plan.camera_of(window), plan.shade_of(window));
         let shading = shade::Shading {
@@ -139,7 +155,13 @@ impl<R: Real> Reference<R> {
             .map(|i| {
                 let pixel = [i % window.size[0], i / window.size[0]];
                 let mut ray = camera_rays::camera_ray(&camera, &grid, pixel);
-                grid_trace::grid_trace(&mut ray, &grid, &self.lists, &self.polynomials);
+                match discs {
+                    Some(discs) => {
+                        let in_picture = [0, 1].map(|axis| window.origin[axis] + pixel[axis]);
+                        disc_trace(&mut ray, in_picture, discs, &self.polynomials);
+                    }
+                    None => grid_trace(&mut ray, &grid, &self.lists, &self.polynomials),
+                }
                 let (hit, iterations) = self.settle(plan, &grid, &mut ray);
                 shade::shade(&ray, hit, iterations, &shading)
             })
@@ -171,7 +193,7 @@ impl<R: Real> Reference<R> {
                 Refined::Rejected(more) => {
                     iterations += more;
                     refine::resume(ray, grid);
-                    grid_trace::grid_trace(ray, grid, &self.lists, &self.polynomials);
+                    grid_trace(ray, grid, &self.lists, &self.polynomials);
                 }
             }
         }

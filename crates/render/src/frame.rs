@@ -1,12 +1,13 @@
 //! One frame: tile after tile, pass after pass.
 
 use crate::RenderError;
+use crate::discs::{DiscLists, Discs};
 use crate::passes::{
-    CameraRays, GridTrace, GridTraceIo, Records, Refine, RefineIo, Shade, ShadeIo, SurfaceHit,
-    SurfaceHitIo,
+    CameraRays, DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Records, Refine, RefineIo, Shade,
+    ShadeIo, SurfaceHit, SurfaceHitIo,
 };
 use crate::state::RayState;
-use gpu::{Buffer, Device, Recorder};
+use gpu::{Buffer, Device, Recorder, Timings};
 use kernels::layout::{FilmPixel, Hit, TraceParams};
 use plan::{Picture, Plan, Window};
 use points::Watch;
@@ -30,7 +31,7 @@ const EMPTY_PIXEL: FilmPixel = FilmPixel {
 pub struct FrameStats {
     /// From submission to completion of all passes, shading included.
     pub trace: Duration,
-    /// Dispatches of `grid_trace`.
+    /// Dispatches of `grid_trace` and `disc_trace`.
     pub passes: u32,
     /// Rays from the camera.
     pub camera_rays: u64,
@@ -63,6 +64,8 @@ pub struct Renderer {
     grid_trace: GridTrace,
     surface_hit: SurfaceHit,
     refine: Refine,
+    discs: Discs,
+    disc_trace: DiscTrace,
     shade: Shade,
     recorder: Recorder,
 }
@@ -112,6 +115,8 @@ impl Renderer {
             grid_trace: GridTrace::new(device, records)?,
             surface_hit: SurfaceHit::new(device)?,
             refine: Refine::new(device, records)?,
+            discs: Discs::new(device, plan.cloud.points.len() as u32)?,
+            disc_trace: DiscTrace::new(device, records)?,
             shade: Shade::new(device)?,
             recorder: Recorder::new(device)?,
         })
@@ -121,6 +126,12 @@ impl Renderer {
     #[must_use]
     pub fn surfaces(&self) -> &Surfaces {
         &self.surfaces
+    }
+
+    /// The points of the last tile's screen tiles, where a tile was traced by discs.
+    #[must_use]
+    pub fn disc_lists(&self) -> Option<&DiscLists> {
+        self.discs.lists()
     }
 
     /// Traces one picture of the plan that this renderer was made for.
@@ -140,7 +151,8 @@ impl Renderer {
         for tile in plan.tiles() {
             let started = Instant::now();
             self.start_rays(plan, &tile);
-            self.trace_to_the_end(plan, &tile, &mut stats, watch)?;
+            let by_discs = self.bin_discs(plan, &tile, &mut stats)?;
+            self.trace_to_the_end(plan, &tile, by_discs, &mut stats, watch)?;
             self.settle_hits(plan, &tile, &mut stats, watch)?;
             self.shade_tile(plan, &tile, &mut stats)?;
             stats.trace += started.elapsed();
@@ -162,11 +174,28 @@ impl Renderer {
         );
     }
 
-    /// Passes until no ray lives: the paper's loop on the CPU.
+    /// Lists the points of each screen tile, if this tile is to be traced by discs; whether it is.
+    fn bin_discs(
+        &mut self,
+        plan: &Plan,
+        tile: &Window,
+        stats: &mut FrameStats,
+    ) -> Result<bool, RenderError> {
+        if !plan.by_discs(tile) {
+            return Ok(false);
+        }
+        let mut timed = |timings: &Timings| stats.add_kernels(&timings.passes);
+        let lists = self.discs.bin(&mut self.recorder, plan, tile, &self.surfaces, &mut timed)?;
+        Ok(lists.is_some())
+    }
+
+    /// Passes until no ray lives: the paper's loop on the CPU. Through the grid, unless the rays are
+    /// fresh from the camera and `by_discs`.
     fn trace_to_the_end(
         &mut self,
         plan: &Plan,
         tile: &Window,
+        by_discs: bool,
         stats: &mut FrameStats,
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
@@ -178,8 +207,18 @@ impl Renderer {
                 return Err(RenderError::Interrupted);
             }
             self.recorder.fill(&self.live, 0, 4, 0);
-            let io = GridTraceIo { surfaces: &self.surfaces, state: &self.state, live: &self.live };
-            self.grid_trace.record(&mut self.recorder, io, &params);
+            match self.discs.lists().filter(|_| by_discs) {
+                Some(lists) => {
+                    let (surfaces, state, live) = (&self.surfaces, &self.state, &self.live);
+                    let io = DiscTraceIo { lists, surfaces, state, live };
+                    self.disc_trace.record(&mut self.recorder, io, &params);
+                }
+                None => {
+                    let (surfaces, state, live) = (&self.surfaces, &self.state, &self.live);
+                    let io = GridTraceIo { surfaces, state, live };
+                    self.grid_trace.record(&mut self.recorder, io, &params);
+                }
+            }
             stats.add_kernels(&self.recorder.submit()?.passes);
             self.state.swap();
             stats.passes += 1;
@@ -220,7 +259,7 @@ impl Renderer {
             }
             let (surfaces, state) = (&self.surfaces, &self.state.current);
             self.refine.record_resume(&mut self.recorder, surfaces, state, &self.hits, &params);
-            self.trace_to_the_end(plan, tile, stats, watch)?;
+            self.trace_to_the_end(plan, tile, false, stats, watch)?;
         }
     }
 

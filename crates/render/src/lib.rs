@@ -6,10 +6,12 @@
 //! same bytes, which the test `every_k_gives_the_same_bytes` checks.
 #![forbid(unsafe_code)]
 
+mod discs;
 mod frame;
 mod passes;
 mod state;
 
+pub use discs::DiscLists;
 pub use frame::{FrameStats, Renderer};
 pub use passes::Records;
 pub use points::device::BuildError;

@@ -3,7 +3,7 @@
 use super::{
     PointCells, line,
     scan::Scan,
-    sort::{Pairs, Sort},
+    sort::{Pairs, Sort, SortSpace},
 };
 use crate::BALL_MARGIN;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
@@ -143,7 +143,8 @@ impl GridBuild {
             return Ok(None);
         }
         let params = GridParams { pair_count, ..params };
-        let pairs = Pairs::new(device, pair_count)?;
+        let mut pairs = Pairs::new(device, pair_count)?;
+        let mut space = SortSpace::new(device, pair_count)?;
         rec.pass("grid_emit", &self.emit)
             .buffer(GRID_INFO, io.grid_info)
             .buffer(GRID_POLYNOMIALS, io.polynomials)
@@ -154,7 +155,7 @@ impl GridBuild {
             .push(&params)
             .dispatch(line(pair_count));
         let largest = io.grid.cell_count();
-        let pairs = self.sort.run(device, rec, &self.scan, pairs, pair_count, largest)?;
+        self.sort.record(rec, &self.scan, &mut pairs, &mut space, pair_count, largest);
         Ok(Some((pairs, params)))
     }
 }

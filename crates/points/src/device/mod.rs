@@ -8,6 +8,9 @@ mod grid_build;
 mod scan;
 mod sort;
 
+pub use scan::Scan;
+pub use sort::{Pairs, Sort, SortSpace};
+
 use crate::{Cloud, NeighborSearch, Watch, plan_grid};
 use fit::FitPolynomials;
 use gpu::{Buffer, Device, GpuError, Recorder};
@@ -162,6 +165,7 @@ fn fit_all(
 }
 
 /// Invocations for a list of `count` entries: over rows where one axis would be too short.
-pub(crate) fn line(count: u32) -> [u32; 3] {
+#[must_use]
+pub fn line(count: u32) -> [u32; 3] {
     [count.min(LINE_ROW), count.div_ceil(LINE_ROW), 1]
 }

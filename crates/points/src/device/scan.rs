@@ -7,12 +7,17 @@ use kernels::spirv;
 use std::sync::Arc;
 
 /// Turns a buffer of counts into offsets, in place.
-pub(crate) struct Scan {
+#[derive(Debug)]
+pub struct Scan {
     reduce: Kernel,
     apply: Kernel,
 }
 
 impl Scan {
+    /// Builds the pipelines. Fails only if the driver rejects them.
+    ///
+    /// # Errors
+    /// A driver that rejects a pipeline.
     pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
         let bindings = [(SCAN_VALUES, Binding::StorageBuffer), (SCAN_SUMS, Binding::StorageBuffer)];
         let params = size_of::<ScanParams>();
@@ -23,7 +28,10 @@ impl Scan {
         })
     }
 
-    /// Space for the sums of runs, level by level, of a list of `count` values.
+    /// Space for the sums of runs, level by level, of a list of at most `count` values.
+    ///
+    /// # Errors
+    /// A device without the memory.
     pub fn levels(device: &Arc<Device>, count: u32) -> Result<Vec<Buffer>, GpuError> {
         let mut levels = Vec::new();
         let mut runs = count.div_ceil(RUN_LENGTH).max(1);
@@ -35,7 +43,7 @@ impl Scan {
         Ok(levels)
     }
 
-    /// Records the scan of the first `count` of `values`.
+    /// Records the scan of the first `count` of `values`. A sum past `SCAN_LIMIT` is that instead.
     pub fn record(&self, rec: &mut Recorder, values: &Buffer, count: u32, levels: &[Buffer]) {
         let runs = count.div_ceil(RUN_LENGTH);
         let Some((sums, above)) = levels.split_first() else { return };

@@ -11,12 +11,19 @@ use kernels::spirv;
 use std::sync::Arc;
 
 /// Keys and what travels with them.
-pub(crate) struct Pairs {
+#[derive(Debug)]
+pub struct Pairs {
+    /// What is sorted by.
     pub keys: Buffer,
+    /// A point's slot for each key.
     pub slots: Buffer,
 }
 
 impl Pairs {
+    /// Space for `count` pairs.
+    ///
+    /// # Errors
+    /// A device without the memory, or too many for one binding.
     pub fn new(device: &Arc<Device>, count: u32) -> Result<Self, GpuError> {
         Ok(Self {
             keys: Buffer::new(device, "pair keys", u64::from(count) * 4)?,
@@ -25,12 +32,41 @@ impl Pairs {
     }
 }
 
-pub(crate) struct Sort {
+/// Space to sort pairs in, kept from one sort to the next.
+#[derive(Debug)]
+pub struct SortSpace {
+    spare: Pairs,
+    histogram: Buffer,
+    levels: Vec<Buffer>,
+}
+
+impl SortSpace {
+    /// Space to sort at most `count` pairs.
+    ///
+    /// # Errors
+    /// A device without the memory, or too many for one binding.
+    pub fn new(device: &Arc<Device>, count: u32) -> Result<Self, GpuError> {
+        let entries = count.div_ceil(RUN_LENGTH) << DIGIT_BITS;
+        Ok(Self {
+            spare: Pairs::new(device, count)?,
+            histogram: Buffer::new(device, "sort histogram", u64::from(entries) * 4)?,
+            levels: Scan::levels(device, entries)?,
+        })
+    }
+}
+
+/// Sorts pairs by key.
+#[derive(Debug)]
+pub struct Sort {
     count: Kernel,
     scatter: Kernel,
 }
 
 impl Sort {
+    /// Builds the pipelines.
+    ///
+    /// # Errors
+    /// A driver that rejects a pipeline.
     pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
         let all = [SORT_KEYS_IN, SORT_SLOTS_IN, SORT_HISTOGRAM, SORT_KEYS_OUT, SORT_SLOTS_OUT]
             .map(|binding| (binding, Binding::StorageBuffer));
@@ -42,40 +78,38 @@ impl Sort {
         })
     }
 
-    /// Sorts `pairs`, whose keys are at most `largest`; returns them, as another object.
-    pub fn run(
+    /// Records the sort of the first `count` of `pairs`, whose keys are at most `largest`. The
+    /// buffers of `pairs` and the space change places.
+    pub fn record(
         &self,
-        device: &Arc<Device>,
         rec: &mut Recorder,
         scan: &Scan,
-        pairs: Pairs,
+        pairs: &mut Pairs,
+        space: &mut SortSpace,
         count: u32,
         largest: u32,
-    ) -> Result<Pairs, GpuError> {
+    ) {
         let runs = count.div_ceil(RUN_LENGTH);
         let entries = runs << DIGIT_BITS;
-        let histogram = Buffer::new(device, "sort histogram", u64::from(entries) * 4)?;
-        let levels = Scan::levels(device, entries)?;
-        let (mut from, mut to) = (pairs, Pairs::new(device, count)?);
+        let SortSpace { spare, histogram, levels } = space;
         for shift in (0..u32::BITS - largest.leading_zeros()).step_by(DIGIT_BITS as usize) {
             let params = SortParams { count, shift, runs };
-            rec.fill(&histogram, 0, u64::from(entries) * 4, 0);
+            rec.fill(histogram, 0, u64::from(entries) * 4, 0);
             rec.pass("sort_count", &self.count)
-                .buffer(SORT_KEYS_IN, &from.keys)
-                .buffer(SORT_HISTOGRAM, &histogram)
+                .buffer(SORT_KEYS_IN, &pairs.keys)
+                .buffer(SORT_HISTOGRAM, histogram)
                 .push(&params)
                 .dispatch(line(runs));
-            scan.record(rec, &histogram, entries, &levels);
+            scan.record(rec, histogram, entries, levels);
             rec.pass("sort_scatter", &self.scatter)
-                .buffer(SORT_KEYS_IN, &from.keys)
-                .buffer(SORT_SLOTS_IN, &from.slots)
-                .buffer(SORT_HISTOGRAM, &histogram)
-                .buffer(SORT_KEYS_OUT, &to.keys)
-                .buffer(SORT_SLOTS_OUT, &to.slots)
+                .buffer(SORT_KEYS_IN, &pairs.keys)
+                .buffer(SORT_SLOTS_IN, &pairs.slots)
+                .buffer(SORT_HISTOGRAM, histogram)
+                .buffer(SORT_KEYS_OUT, &spare.keys)
+                .buffer(SORT_SLOTS_OUT, &spare.slots)
                 .push(&params)
                 .dispatch(line(runs));
-            std::mem::swap(&mut from, &mut to);
+            std::mem::swap(pairs, spare);
         }
-        Ok(from)
     }
 }

@@ -1,12 +1,20 @@
 //! The passes of a frame. Each owns its pipeline, borrows what it works on, and offers `record`.
 
 mod camera_rays;
+mod disc_count;
+mod disc_emit;
+mod disc_ranges;
+mod disc_trace;
 mod grid_trace;
 mod refine;
 mod shade;
 mod surface_hit;
 
 pub(crate) use camera_rays::CameraRays;
+pub(crate) use disc_count::DiscCount;
+pub(crate) use disc_emit::DiscEmit;
+pub(crate) use disc_ranges::DiscRanges;
+pub(crate) use disc_trace::{DiscTrace, DiscTraceIo};
 pub use grid_trace::Records;
 pub(crate) use grid_trace::{GridTrace, GridTraceIo};
 pub(crate) use refine::{Refine, RefineIo};

@@ -1,0 +1,78 @@
+//! Primary rays by discs (\[T\] §4): when, and how the points of a screen tile are ordered.
+
+use crate::{Plan, Primary, Window};
+use kernels::layout::{DISC_TILE, DepthRanks, DiscParams, GridInfo};
+
+/// Pairs of a screen tile and a point that one tile of the picture may have. One binding holds 32
+/// million on any device; what has more is traced through the grid, which gives the same bytes.
+pub const MAX_DISC_PAIRS: u32 = 16_000_000;
+/// Bits of a pair's key: three rounds of the sort. What the screen tile leaves goes to the rank.
+const KEY_BITS: u32 = 24;
+/// Depths are told apart from the farthest down to this share of it.
+const NEAREST_SHARE: f64 = 1.0 / 64.0;
+
+impl Plan {
+    /// Whether the camera rays of a tile of the picture are to find their first hit by discs.
+    #[must_use]
+    pub fn by_discs(&self, _tile: &Window) -> bool {
+        match self.primary {
+            Primary::Discs => true,
+            Primary::Grid | Primary::Auto => false,
+        }
+    }
+
+    /// Parameters of `disc_count` for one tile of the picture. The grid says where the points are.
+    #[must_use]
+    pub fn discs_of(&self, tile: &Window, grid: &GridInfo) -> DiscParams {
+        DiscParams {
+            camera: self.camera_of(tile),
+            ranks: depth_ranks(self.camera.eye, grid, screen_tiles(tile)),
+            point_count: self.cloud.points.len() as u32,
+            pair_count: 0,
+        }
+    }
+}
+
+/// Screen tiles of a tile of the picture.
+#[must_use]
+pub fn screen_tiles(tile: &Window) -> u32 {
+    tile.size[0].div_ceil(DISC_TILE) * tile.size[1].div_ceil(DISC_TILE)
+}
+
+fn depth_ranks(eye: [f32; 3], grid: &GridInfo, tiles: u32) -> DepthRanks {
+    let (mut near, mut far) = (0.0, 0.0);
+    for (axis, eye) in eye.into_iter().map(f64::from).enumerate() {
+        let low = f64::from(grid.origin[axis]) - eye;
+        let high = low + f64::from(grid.edge) * f64::from(grid.resolution[axis]);
+        let (least, most) = (low.max(-high).max(0.0), high.max(-low));
+        near += least * least;
+        far += most * most;
+    }
+    let farthest = (far.sqrt() as f32).max(f32::MIN_POSITIVE);
+    let nearest = (near.sqrt().max(far.sqrt() * NEAREST_SHARE) as f32).max(f32::MIN_POSITIVE);
+    let nearest = nearest.min(farthest);
+    let bits = KEY_BITS - (u32::BITS - tiles.saturating_sub(1).leading_zeros());
+    let steps = farthest.to_bits() - nearest.to_bits();
+    let shift = (u32::BITS - steps.leading_zeros()).saturating_sub(bits);
+    DepthRanks { nearest, farthest, shift, bits }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(origin: [f32; 3], edge: f32) -> GridInfo {
+        GridInfo { origin, edge, resolution: [2; 3], inverse_edge: 1.0 / edge }
+    }
+
+    #[test]
+    fn ranks_span_the_depths_of_the_scene_and_fit_their_bits() {
+        for (eye, nearest) in [([0.0, 0.0, 5.0], 4.0), ([0.5, 0.0, 0.0], 4.25f32.sqrt() / 64.0)] {
+            let ranks = depth_ranks(eye, &grid([-1.0; 3], 1.0), 4800);
+            assert!((ranks.nearest / nearest - 1.0).abs() < 1e-6, "{ranks:?}");
+            assert_eq!(ranks.bits, 11);
+            let highest = (ranks.farthest.to_bits() - ranks.nearest.to_bits()) >> ranks.shift;
+            assert!(highest < 1 << ranks.bits && highest >= 1 << (ranks.bits - 1), "{ranks:?}");
+        }
+    }
+}

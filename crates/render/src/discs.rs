@@ -1,0 +1,144 @@
+//! Discs binned into screen tiles: count, scan, emit, sort, ranges (\[T\] §4).
+//!
+//! Depends on the camera, so it runs for every tile of every picture. Buffers stay from one to the
+//! next and grow where they must.
+
+use crate::passes::{DiscCount, DiscEmit, DiscRanges};
+use gpu::{Buffer, Device, GpuError, Recorder, Timings};
+use kernels::layout::{DepthRanks, DiscParams};
+use plan::{MAX_DISC_PAIRS, Plan, Window, screen_tiles};
+use points::device::{Pairs, Scan, Sort, SortSpace, Surfaces};
+use std::sync::Arc;
+
+/// The points of each screen tile, front to back.
+#[derive(Debug)]
+pub struct DiscLists {
+    /// First and past-the-last pair of each screen tile; empty ones have zeros.
+    pub tiles: Buffer,
+    /// Screen tile and rank of each pair, ascending, and its point.
+    pub pairs: Pairs,
+    /// How many pairs there are.
+    pub pair_count: u32,
+    /// How the pairs of a screen tile are ordered.
+    pub ranks: DepthRanks,
+    space: SortSpace,
+    capacity: u32,
+}
+
+impl DiscLists {
+    fn new(device: &Arc<Device>, tiles: u32, capacity: u32) -> Result<Self, GpuError> {
+        Ok(Self {
+            tiles: Buffer::new(device, "screen tiles", u64::from(tiles) * 8)?,
+            pairs: Pairs::new(device, capacity)?,
+            pair_count: 0,
+            ranks: DepthRanks { nearest: 1.0, farthest: 1.0, shift: 0, bits: 0 },
+            space: SortSpace::new(device, capacity)?,
+            capacity,
+        })
+    }
+}
+
+/// Bins the discs of a scene.
+pub(crate) struct Discs {
+    device: Arc<Device>,
+    count: DiscCount,
+    emit: DiscEmit,
+    ranges: DiscRanges,
+    scan: Scan,
+    sort: Sort,
+    offsets: Buffer,
+    levels: Vec<Buffer>,
+    lists: Option<DiscLists>,
+}
+
+impl Discs {
+    /// For a scene of `point_count` points.
+    pub fn new(device: &Arc<Device>, point_count: u32) -> Result<Self, GpuError> {
+        Ok(Self {
+            device: Arc::clone(device),
+            count: DiscCount::new(device)?,
+            emit: DiscEmit::new(device)?,
+            ranges: DiscRanges::new(device)?,
+            scan: Scan::new(device)?,
+            sort: Sort::new(device)?,
+            offsets: Buffer::new(device, "disc offsets", (u64::from(point_count) + 1) * 4)?,
+            levels: Scan::levels(device, point_count + 1)?,
+            lists: None,
+        })
+    }
+
+    /// What [`Discs::bin`] made last.
+    pub fn lists(&self) -> Option<&DiscLists> {
+        self.lists.as_ref()
+    }
+
+    /// Lists the points of each screen tile of a tile of the picture; `None` where the pairs are
+    /// too many. `timed` is told what each submission cost.
+    pub fn bin(
+        &mut self,
+        rec: &mut Recorder,
+        plan: &Plan,
+        tile: &Window,
+        surfaces: &Surfaces,
+        timed: &mut dyn FnMut(&Timings),
+    ) -> Result<Option<&DiscLists>, GpuError> {
+        let counted = plan.discs_of(tile, &surfaces.grid);
+        let pair_count = self.count_pairs(rec, &surfaces.polynomials, &counted, timed)?;
+        if pair_count > MAX_DISC_PAIRS {
+            return Ok(None);
+        }
+        let params = DiscParams { pair_count, ..counted };
+        self.list_pairs(rec, &surfaces.polynomials, &params, screen_tiles(tile))?;
+        timed(&rec.submit()?);
+        Ok(self.lists.as_ref())
+    }
+
+    fn count_pairs(
+        &self,
+        rec: &mut Recorder,
+        polynomials: &Buffer,
+        params: &DiscParams,
+        timed: &mut dyn FnMut(&Timings),
+    ) -> Result<u32, GpuError> {
+        let end = u64::from(params.point_count) * 4;
+        rec.fill(&self.offsets, end, 4, 0);
+        self.count.record(rec, polynomials, &self.offsets, params);
+        self.scan.record(rec, &self.offsets, params.point_count + 1, &self.levels);
+        timed(&rec.submit()?);
+        let mut total = [0];
+        self.offsets.read(end, &mut total)?;
+        Ok(total[0])
+    }
+
+    fn list_pairs(
+        &mut self,
+        rec: &mut Recorder,
+        polynomials: &Buffer,
+        params: &DiscParams,
+        tiles: u32,
+    ) -> Result<(), GpuError> {
+        let fits = |lists: &DiscLists| {
+            lists.capacity >= params.pair_count && lists.tiles.bytes() >= u64::from(tiles) * 8
+        };
+        let kept = self.lists.take().filter(fits);
+        let mut lists = match kept {
+            Some(lists) => lists,
+            // A quarter more: the next picture's camera is often a little nearer.
+            None => {
+                let capacity = (params.pair_count + params.pair_count / 4).min(MAX_DISC_PAIRS);
+                DiscLists::new(&self.device, tiles, capacity)?
+            }
+        };
+        (lists.pair_count, lists.ranks) = (params.pair_count, params.ranks);
+        rec.fill(&lists.tiles, 0, u64::from(tiles) * 8, 0);
+        if params.pair_count > 0 {
+            self.emit.record(rec, polynomials, &self.offsets, &lists.pairs, params);
+            let largest = (tiles << params.ranks.bits) - 1;
+            let DiscLists { pairs, space, pair_count, .. } = &mut lists;
+            self.sort.record(rec, &self.scan, pairs, space, *pair_count, largest);
+            self.ranges.record(rec, &lists.pairs.keys, &lists.tiles, params);
+        }
+        self.lists = Some(lists);
+        Ok(())
+    }
+}
