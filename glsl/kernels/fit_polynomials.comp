@@ -15,6 +15,7 @@
 #include "math.glsl"
 #include "eigen.glsl"
 #include "fit.glsl"
+#include "gap.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
@@ -63,12 +64,14 @@ void main() {
     bool spread_out = h > SMALLEST_FEATURE && reach > SMALLEST_FEATURE;
     float inverse_h = 1.0 / (spread_out ? h : 1.0);
 
+    float weight_square = params.weight_scale * params.weight_scale;
+
     // The point itself is the first term of every sum: weight 1 at the origin.
     float total = 1.0;
     vec3 sum = vec3(0.0);
     for (uint j = 0u; j < count; ++j) {
         vec3 y = neighbor_offset(list, j, center) * inverse_h;
-        float weight = exp_negative(-dot3(y, y));
+        float weight = exp_negative(-dot3(y, y) * weight_square);
         total += weight;
         sum += weight * y;
     }
@@ -77,7 +80,7 @@ void main() {
     vec3 off = vec3(mean.x * mean.y, mean.x * mean.z, mean.y * mean.z);
     for (uint j = 0u; j < count; ++j) {
         vec3 y = neighbor_offset(list, j, center) * inverse_h;
-        float weight = exp_negative(-dot3(y, y));
+        float weight = exp_negative(-dot3(y, y) * weight_square);
         vec3 c = y - mean;
         vec3 wc = weight * c;
         diagonal += wc * c;
@@ -92,14 +95,39 @@ void main() {
     add_sample(eq, 0.0, 0.0, 0.0, 1.0);
     for (uint j = 0u; j < count; ++j) {
         vec3 y = neighbor_offset(list, j, center) * inverse_h;
-        add_sample(eq, dot3(y, u), dot3(y, v), dot3(y, n), exp_negative(-dot3(y, y)));
+        add_sample(eq, dot3(y, u), dot3(y, v), dot3(y, n), exp_negative(-dot3(y, y) * weight_square));
     }
 
     uint distinct = count_distinct(list, count, center);
     bool spans_plane = values.y > COLLINEAR * values.z;
     float c[6];
     uint kind = fit_coefficients(eq, spread_out && spans_plane ? params.polynomial : FIT_NO_SURFACE, distinct, c);
-    float trust = kind != FIT_NO_SURFACE ? params.trust * h : 0.0;
+    float reach_needed = 0.0;
+    if (params.close_gaps != 0u && kind != FIT_NO_SURFACE) {
+        vec4 e0 = vec4(UNBOUNDED), e1 = e0, e2 = e0, e3 = e0, e4 = e0, e5 = e0;
+        for (uint j = 0u; j < count; ++j) {
+            vec3 y = neighbor_offset(list, j, center) * inverse_h;
+            vec2 q = vec2(dot3(y, u), dot3(y, v));
+            float half_square = 0.5 * (q.x * q.x + q.y * q.y);
+            e0 = narrow(e0, GAP_COSINES[0], GAP_SINES[0], q, half_square);
+            e1 = narrow(e1, GAP_COSINES[1], GAP_SINES[1], q, half_square);
+            e2 = narrow(e2, GAP_COSINES[2], GAP_SINES[2], q, half_square);
+            e3 = narrow(e3, GAP_COSINES[3], GAP_SINES[3], q, half_square);
+            e4 = narrow(e4, GAP_COSINES[4], GAP_SINES[4], q, half_square);
+            e5 = narrow(e5, GAP_COSINES[5], GAP_SINES[5], q, half_square);
+        }
+        float f0 = extent_of_cell(e0, GAP_COSINES[0], GAP_SINES[0], c);
+        float f1 = extent_of_cell(e1, GAP_COSINES[1], GAP_SINES[1], c);
+        float f2 = extent_of_cell(e2, GAP_COSINES[2], GAP_SINES[2], c);
+        float f3 = extent_of_cell(e3, GAP_COSINES[3], GAP_SINES[3], c);
+        float f4 = extent_of_cell(e4, GAP_COSINES[4], GAP_SINES[4], c);
+        float f5 = extent_of_cell(e5, GAP_COSINES[5], GAP_SINES[5], c);
+        bool closed = bounded(e0) && bounded(e1) && bounded(e2) && bounded(e3) && bounded(e4) && bounded(e5);
+        float square = max(max(max(f0, f1), max(f2, f3)), max(f4, f5));
+        reach_needed = closed ? GAP_MARGIN * sqrt(square) : 0.0;
+    }
+    float ratio = max(params.trust, min(reach_needed, 1.0));
+    float trust = kind != FIT_NO_SURFACE ? ratio * h : 0.0;
     polynomials[slot] =
         to_world(center, trust, h, inverse_h, n, u, v, c, params.object, points[slot].index);
     outcomes[slot] = FitOutcome(trust, kind, h);

@@ -125,15 +125,17 @@ uint within_reach(uint first, uint end, vec3 x, float inverse_h, uvec2 slots) {
 }
 
 // A neighbour's place in units of h, and its weight.
-vec4 neighbor(uint i, vec3 x, float inverse_h) {
+vec4 neighbor(uint i, vec3 x, float inverse_h, float weight_square) {
     vec3 y = (listed_point(i).position - x) * inverse_h;
-    return vec4(y, exp_negative(-dot3(y, y)));
+    return vec4(y, exp_negative(-dot3(y, y) * weight_square));
 }
 
 // The polynomial fitted at x over the plane of its neighbourhood; kind FIT_NO_SURFACE where there is
 // none.
 Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, uvec2 slots, out uint kind) {
     float inverse_h = 1.0 / h;
+    float weight_scale = objects[object].weight_scale;
+    float weight_square = weight_scale * weight_scale;
     float total = 0.0;
     vec3 sum = vec3(0.0), diagonal = vec3(0.0), off = vec3(0.0);
     for (uint row = 0u; row < rows.count; ++row) {
@@ -141,7 +143,7 @@ Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, uvec2 sl
         for (uint first = range.x; first < range.y; first += BATCH) {
             uint inside = within_reach(first, range.y, x, inverse_h, slots);
             while (inside != 0u) {
-                vec4 yw = neighbor(first + uint(findLSB(inside)), x, inverse_h);
+                vec4 yw = neighbor(first + uint(findLSB(inside)), x, inverse_h, weight_square);
                 inside &= inside - 1u;
                 vec3 y = yw.xyz, wy = yw.w * yw.xyz;
                 total += yw.w;
@@ -165,7 +167,7 @@ Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, uvec2 sl
         for (uint first = range.x; first < range.y; first += BATCH) {
             uint inside = within_reach(first, range.y, x, inverse_h, slots);
             while (inside != 0u) {
-                vec4 yw = neighbor(first + uint(findLSB(inside)), x, inverse_h);
+                vec4 yw = neighbor(first + uint(findLSB(inside)), x, inverse_h, weight_square);
                 inside &= inside - 1u;
                 add_sample(eq, dot3(yw.xyz, u), dot3(yw.xyz, v), dot3(yw.xyz, n), yw.w);
             }

@@ -121,7 +121,7 @@ struct FitOutcome {      // 12 bytes
     float feature_size;  // 8  h
 };
 
-struct FitParams {       // 32 bytes
+struct FitParams {       // 40 bytes
     uint first_slot;     //  0  of this batch
     uint point_count;    //  4  in this batch
     uint neighbors;      //  8  entries a point in the list of neighbours
@@ -130,6 +130,8 @@ struct FitParams {       // 32 bytes
     float trust;         // 20  b / h
     uint object;         // 24
     uint first_listed;   // 28  slot whose neighbours come first in the list
+    float weight_scale;  // 32  h over the width of the weights
+    uint close_gaps;     // 36  1: b grows, at most to h, where neighbours leave a gap
 };
 
 struct GridInfo {        // 32 bytes
@@ -212,9 +214,9 @@ struct ObjectInfo {      // 48 bytes
     uint max_iterations; // 24  of the refinement; 0: hits are taken as they are
     float tolerance;     // 28  of the refinement, over h
     uint slot_count;     // 32
-    uint pad0;           // 36
-    uint pad1;           // 40
-    uint pad2;           // 44
+    float weight_scale;  // 36  h over the width of the weights
+    uint pad0;           // 40
+    uint pad1;           // 44
 };
 
 struct Light {           // 32 bytes

@@ -254,10 +254,14 @@ pub struct FitParams {
     pub object: u32,
     /// Slot whose neighbours come first in the list.
     pub first_listed: u32,
+    /// h over the width of the weights.
+    pub weight_scale: f32,
+    /// 1: b grows, at most to h, where neighbours leave a gap.
+    pub close_gaps: u32,
 }
-gpu_layout!(FitParams, 32, {
+gpu_layout!(FitParams, 40, {
     first_slot: 0, point_count: 4, neighbors: 8, polynomial: 12, feature_size: 16, trust: 20,
-    object: 24, first_listed: 28,
+    object: 24, first_listed: 28, weight_scale: 32, close_gaps: 36,
 });
 
 /// The uniform grid's place and size.
@@ -443,16 +447,17 @@ pub struct ObjectInfo {
     pub tolerance: f32,
     /// Slots of the object.
     pub slot_count: u32,
+    /// h over the width of the weights.
+    pub weight_scale: f32,
     /// Unused.
     pub pad0: u32,
     /// Unused.
     pub pad1: u32,
-    /// Unused.
-    pub pad2: u32,
 }
 gpu_layout!(ObjectInfo, 48, {
     albedo: 0, first_color: 12, first_slot: 16, polynomial: 20, max_iterations: 24, tolerance: 28,
-    slot_count: 32, pad0: 36, pad1: 40, pad2: 44,
+    slot_count: 32, weight_scale: 36, pad0: 40,
+    pad1: 44,
 });
 
 /// One light.

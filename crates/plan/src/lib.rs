@@ -271,6 +271,8 @@ fn fit_params(object: &Object, index: u32, cloud: &Cloud) -> FitParams {
         trust: object.surface.trust as f32,
         object: index,
         first_listed: slots.first_slot,
+        weight_scale: (1.0 / object.surface.weight_width) as f32,
+        close_gaps: u32::from(object.surface.close_gaps),
     }
 }
 
@@ -307,9 +309,9 @@ fn object_infos(
                 Refine::Project { tolerance, .. } => tolerance as f32,
             },
             slot_count: cloud.objects[index].count,
+            weight_scale: (1.0 / object.surface.weight_width) as f32,
             pad0: 0,
             pad1: 0,
-            pad2: 0,
         });
         if let Some(own) = own {
             colors.extend(cloud.by_slot(index, own).iter().flatten());

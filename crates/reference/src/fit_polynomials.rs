@@ -2,6 +2,7 @@
 
 use crate::eigen::eigen_symmetric;
 use crate::fit::{COLLINEAR, Frame, fit_coefficients};
+use crate::gap::reach_needed;
 use crate::least_squares::NormalEquations;
 use crate::polynomial::Polynomial;
 use crate::real::{Real, V3};
@@ -53,10 +54,12 @@ pub fn fit_polynomial<R: Real>(
     let smallest = R::of(SMALLEST_FEATURE);
     let spread_out = h > smallest && reach > smallest;
     let inverse_h = one / if spread_out { h } else { one };
+    let scale = R::of_f32(params.weight_scale);
+    let weight_square = scale * scale;
     let samples = || {
         (0..count).map(|j| {
             let y = around.offset::<R>(j).times(inverse_h);
-            (y, (-y.dot(y)).exp_negative())
+            (y, (-y.dot(y) * weight_square).exp_negative())
         })
     };
 
@@ -91,7 +94,12 @@ pub fn fit_polynomial<R: Real>(
     let (kind, coefficients) = fit_coefficients(&equations, first, distinct);
     let frame = Frame { n, u, v };
     let mut polynomial = frame.to_world(V3::of_f32(center), h, inverse_h, &coefficients);
-    polynomial.trust = if kind == FIT_NO_SURFACE { zero } else { R::of_f32(params.trust) * h };
+    let mut ratio = R::of_f32(params.trust);
+    if params.close_gaps != 0 && kind != FIT_NO_SURFACE {
+        let tangential = samples().map(|(y, _)| [y.dot(u), y.dot(v)]);
+        ratio = ratio.max(reach_needed(tangential, &coefficients).min(one));
+    }
+    polynomial.trust = if kind == FIT_NO_SURFACE { zero } else { ratio * h };
     polynomial.object = params.object;
     polynomial.index = points[slot].index;
     (polynomial, kind, h)

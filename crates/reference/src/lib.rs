@@ -11,6 +11,7 @@ pub mod disc_trace;
 pub mod eigen;
 pub mod fit;
 pub mod fit_polynomials;
+pub mod gap;
 pub mod grid;
 pub mod grid_build;
 pub mod grid_trace;

@@ -87,13 +87,15 @@ impl<R: Real> Surroundings<'_, R> {
     fn fit_at(&self, slots: &[u32], x: V3<R>, h: R, object: u32) -> (Polynomial<R>, u32) {
         let zero = R::of(0.0);
         let inverse_h = R::of(1.0) / h;
+        let scale = R::of_f32(self.objects[object as usize].weight_scale);
+        let weight_square = scale * scale;
         let neighbors = || {
             slots.iter().filter_map(|&slot| {
                 let p = &self.polynomials[slot as usize];
                 let y = (p.center - x).times(inverse_h);
                 let square = y.dot(y);
                 let counts = square <= R::of(REACH * REACH) && p.object == object;
-                counts.then(|| (y, (-square).exp_negative()))
+                counts.then(|| (y, (-square * weight_square).exp_negative()))
             })
         };
         let pairs = |a: V3<R>, b: V3<R>| V3([a.x() * b.y(), a.x() * b.z(), a.y() * b.z()]);

@@ -159,7 +159,7 @@ impl Checker {
 impl When {
     fn covers(&self, value: &Value) -> bool {
         match (self, value) {
-            (When::Present, _) | (When::True, Value::Bool(true)) => true,
+            (When::Present, _) => true,
             (When::Is(names), Value::Text(text)) => names.contains(&text.as_str()),
             (When::Above(limit), Value::Integer(integer)) => *integer > i128::from(*limit),
             _ => false,

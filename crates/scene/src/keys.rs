@@ -390,9 +390,14 @@ pub(crate) static SURFACE: Table = Table {
         key(
             "close_gaps",
             Kind::Bool,
-            Words("not applied today; `true` once it is built", "false"),
-            "Raise single trust radii, at most to the feature size, where trust regions leave a \
-             gap.",
+            Value("true"),
+            "Raise single trust radii, at most to the feature size, where neighbours leave a gap.",
+        ),
+        key(
+            "weight_width",
+            Kind::Number(numbers(0.25, 4.0, "")),
+            Value("1.0"),
+            "Width w of the weights exp(-d²/(w h)²): wider smooths noise, narrower keeps detail.",
         ),
         announced("boundary_clip", "Cut the surface at the rim of an open point set."),
         announced("normals", "Take the normals from the file."),

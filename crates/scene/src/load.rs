@@ -284,6 +284,8 @@ impl Surface {
             feature_size: to_number(&table.value("feature_size"))
                 .map_or(FeatureSize::Adaptive, FeatureSize::Constant),
             trust: table.number("trust"),
+            weight_width: table.number("weight_width"),
+            close_gaps: table.flag("close_gaps"),
             refine: match table.text("refine").as_str() {
                 "project" => Refine::Project {
                     tolerance: table.number("tolerance"),

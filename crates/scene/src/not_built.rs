@@ -20,8 +20,6 @@ pub(crate) enum When {
     Is(&'static [&'static str]),
     /// Larger integers.
     Above(i64),
-    /// The value `true`.
-    True,
 }
 
 const fn key(path: &'static str) -> NotBuilt {
@@ -45,7 +43,6 @@ pub(crate) const NOT_BUILT: &[NotBuilt] = &[
     key("lights.radius"),
     key("objects.filter"),
     key("objects.volume"),
-    value("objects.surface.close_gaps", When::True, "use false"),
     key("objects.surface.boundary_clip"),
     key("objects.surface.normals"),
     value("objects.material.kind", When::Is(&["mirror", "glass"]), "use \"diffuse\""),
@@ -72,7 +69,6 @@ impl NotBuilt {
                 format!("{} not built yet", quoted.join(", "))
             }
             When::Above(limit) => format!("more than {limit} not built yet"),
-            When::True => "`true` not built yet".into(),
         }
     }
 }

@@ -150,6 +150,10 @@ pub struct Surface {
     pub feature_size: FeatureSize,
     /// Trust radius over feature size, b/h, 0.5 to 1.
     pub trust: f64,
+    /// Width of the Gaussian weights over feature size, 0.25 to 4.
+    pub weight_width: f64,
+    /// Whether single trust radii grow, at most to the feature size, where neighbours leave a gap.
+    pub close_gaps: bool,
     /// What becomes of a hit with a stored polynomial.
     pub refine: Refine,
 }

@@ -109,8 +109,8 @@ fn write_surface(out: &mut String, surface: &Surface) -> fmt::Result {
             writeln!(out, "max_iterations = {max_iterations}")?;
         }
     }
-    // Written because this default will change: a header keeps its meaning.
-    writeln!(out, "close_gaps = false")
+    writeln!(out, "weight_width = {:?}", surface.weight_width)?;
+    writeln!(out, "close_gaps = {}", surface.close_gaps)
 }
 
 /// A TOML basic string.

@@ -55,6 +55,7 @@ trust = 0.75
 refine = "project"
 tolerance = 2e-5
 max_iterations = 12
+weight_width = 1.5
 close_gaps = false
 [objects.material]
 kind = "diffuse"
@@ -138,6 +139,8 @@ fn every_built_key_is_read() {
             polynomial: Polynomial::Incomplete,
             feature_size: FeatureSize::Constant(0.25),
             trust: 0.75,
+            weight_width: 1.5,
+            close_gaps: false,
             refine: Refine::Project { tolerance: 2e-5, max_iterations: 12 },
         },
         material: Material { albedo: Albedo::Color([0.2, 0.4, 0.6]) },
@@ -163,6 +166,8 @@ fn what_is_left_out_is_the_contracts_default() {
         polynomial: Polynomial::Full,
         feature_size: FeatureSize::Adaptive,
         trust: 0.6,
+        weight_width: 1.0,
+        close_gaps: true,
         refine: Refine::None,
     };
     assert_eq!((object.surface, object.material.albedo), (surface, Albedo::Default));
@@ -238,7 +243,7 @@ transfer = [                   # stops, ascending in value
 "#;
     let error = read(text).unwrap_err();
     assert!(error.lines().iter().all(|line| line.contains("known but not built yet")), "{error}");
-    for key in ["surface.close_gaps", "material.kind", "material.ior", "material.texture"] {
+    for key in ["material.kind", "material.ior", "material.texture"] {
         assert!(error.lines().iter().any(|line| line.contains(key)), "{key} in {error}");
     }
     assert!(error.to_string().contains(": objects[0].volume: "), "{error}");
@@ -261,7 +266,6 @@ fn what_is_not_built_says_so_and_is_not_ignored() {
         ("objects.0.material.ior=1.4", "objects[0].material.ior"),
         ("objects.0.material.priority=0", "objects[0].material.priority"),
         ("objects.1.volume.scalar=density", "objects[1].volume"),
-        ("objects.0.surface.close_gaps=true", "objects[0].surface.close_gaps"),
         ("objects.0.surface.normals=true", "objects[0].surface.normals"),
         ("objects.0.surface.boundary_clip=true", "objects[0].surface.boundary_clip"),
     ] {

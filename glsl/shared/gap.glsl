@@ -1,0 +1,49 @@
+// gap: how far a point's polynomial must reach to meet its neighbours'.
+//
+// twin  crates/reference/src/gap.rs
+// Points cover a surface where each one's disc holds its Voronoi cell. In direction e of the tangent
+// plane the cell ends at the nearest bisector, |q|2 / 2 q.e over the neighbours q; its extent is
+// sampled in 24 directions. A cell that is open, or reaches beyond h, in any of them lies at a rim, which
+// is no gap.
+#ifndef GAP_GLSL
+#define GAP_GLSL
+
+#define GAP_GROUPS 6
+#define UNBOUNDED 1e6    // farther than any bisector that matters, in units of h
+#define GAP_MARGIN 1.15  // for what lies between two sampled directions
+
+const vec4 GAP_COSINES[GAP_GROUPS] = vec4[GAP_GROUPS](
+    vec4(1.000000000, 0.965925826, 0.866025404, 0.707106781),
+    vec4(0.500000000, 0.258819045, 0.0, -0.258819045),
+    vec4(-0.500000000, -0.707106781, -0.866025404, -0.965925826),
+    vec4(-1.000000000, -0.965925826, -0.866025404, -0.707106781),
+    vec4(-0.500000000, -0.258819045, 0.0, 0.258819045),
+    vec4(0.500000000, 0.707106781, 0.866025404, 0.965925826));
+const vec4 GAP_SINES[GAP_GROUPS] = vec4[GAP_GROUPS](
+    vec4(0.0, 0.258819045, 0.500000000, 0.707106781),
+    vec4(0.866025404, 0.965925826, 1.000000000, 0.965925826),
+    vec4(0.866025404, 0.707106781, 0.500000000, 0.258819045),
+    vec4(0.0, -0.258819045, -0.500000000, -0.707106781),
+    vec4(-0.866025404, -0.965925826, -1.000000000, -0.965925826),
+    vec4(-0.866025404, -0.707106781, -0.500000000, -0.258819045));
+
+// Narrows the cell's extent in four directions by the bisector with the neighbour at q, |q| > 0.
+vec4 narrow(vec4 extent, vec4 cosines, vec4 sines, vec2 q, float half_square) {
+    vec4 along = q.x * cosines + q.y * sines;
+    vec4 bisector = half_square / max(along, vec4(1e-6));
+    return min(extent, mix(vec4(UNBOUNDED), bisector, greaterThan(along, vec4(1e-6))));
+}
+
+// Squared distance to the farthest point of the surface g = A x2 + B y2 + C xy + E x + F y + D over the
+// cell, among four directions; in units of h.
+float extent_of_cell(vec4 extent, vec4 cosines, vec4 sines, float c[6]) {
+    vec4 x = extent * cosines, y = extent * sines;
+    vec4 g = c[0] * x * x + c[1] * y * y + c[2] * x * y + c[3] * x + c[4] * y + c[5];
+    vec4 square = extent * extent + g * g;
+    return max(max(square.x, square.y), max(square.z, square.w));
+}
+
+bool bounded(vec4 extent) {
+    return max(max(extent.x, extent.y), max(extent.z, extent.w)) <= 1.0;
+}
+#endif
