@@ -72,11 +72,8 @@ fn normal_error(rendered: &Rendered) -> f64 {
         .map(|(at, _)| {
             let (n, x) = (film.normal[at].map(f64::from), film.position[at].map(f64::from));
             let dot = n[0] * x[0] + n[1] * x[1] + n[2] * x[2];
-            let cross = [
-                n[1] * x[2] - n[2] * x[1],
-                n[2] * x[0] - n[0] * x[2],
-                n[0] * x[1] - n[1] * x[0],
-            ];
+            let cross =
+                [n[1] * x[2] - n[2] * x[1], n[2] * x[0] - n[0] * x[2], n[0] * x[1] - n[1] * x[0]];
             cross.iter().map(|c| c * c).sum::<f64>().sqrt().atan2(dot.abs()).to_degrees()
         })
         .collect();
