@@ -7,6 +7,7 @@ const GAP_MARGIN: f64 = 1.15;
 
 /// Cosine and sine of every 15 degrees, as the kernel has them.
 #[rustfmt::skip]
+#[expect(clippy::approx_constant, reason = "the kernel's digits")]
 const DIRECTIONS: [[f64; 2]; 24] = [
     [1.000000000, 0.0],
     [0.965925826, 0.258819045],
