@@ -209,3 +209,19 @@ fn too_many_pairs_fall_back_to_the_grid() {
     }
     assert_same_bits("fallback", &bench.render(&by_grid), &bench.render(&by_discs));
 }
+
+/// Few points a pixel, enough pixels, and nobody who looks at cells.
+#[test]
+fn auto_takes_discs_where_they_are_faster() {
+    let sets = [set_of(fibonacci_sphere(2_000))];
+    let by_discs = |size: &str, change: fn(&mut Plan)| {
+        let mut plan = plan(&format!("[image]\nsize = {size}"), &sets, Primary::Auto);
+        change(&mut plan);
+        plan.by_discs(&plan.tiles()[0])
+    };
+    assert!(by_discs("[320, 240]", |_| ()));
+    assert!(!by_discs("[80, 60]", |_| ()), "few pixels");
+    assert!(!by_discs("[320, 240]", |plan| plan.cells_per_pass = 1), "the paper's loop");
+    assert!(!by_discs("[320, 240]", |plan| plan.diagnostics = vec![Diagnostic::Cells]));
+    assert!(by_discs("[320, 240]", |plan| plan.diagnostics = vec![Diagnostic::Point]));
+}

@@ -1,6 +1,6 @@
 //! Primary rays by discs (\[T\] §4): when, and how the points of a screen tile are ordered.
 
-use crate::{Plan, Primary, Window};
+use crate::{Diagnostic, Plan, Primary, Window};
 use kernels::layout::{DISC_TILE, DepthRanks, DiscParams, GridInfo};
 
 /// Pairs of a screen tile and a point that one tile of the picture may have. One binding holds 32
@@ -11,14 +11,32 @@ const KEY_BITS: u32 = 24;
 /// Depths are told apart from the farthest down to this share of it.
 const NEAREST_SHARE: f64 = 1.0 / 64.0;
 
+/// Points a pixel up to which discs are faster than the grid: each picture bins all points anew.
+/// Measured in docs/benchmarks.md.
+const POINTS_PER_PIXEL: usize = 4;
+/// Pixels from which on they are: the dispatches of the binning cost what they cost.
+const FEWEST_PIXELS: usize = 32_768;
+
 impl Plan {
     /// Whether the camera rays of a tile of the picture are to find their first hit by discs.
     #[must_use]
-    pub fn by_discs(&self, _tile: &Window) -> bool {
+    pub fn by_discs(&self, tile: &Window) -> bool {
         match self.primary {
             Primary::Discs => true,
-            Primary::Grid | Primary::Auto => false,
+            Primary::Grid => false,
+            Primary::Auto => self.discs_are_faster(tile) && !self.is_about_cells(),
         }
+    }
+
+    fn discs_are_faster(&self, tile: &Window) -> bool {
+        let pixels = tile.pixels();
+        pixels >= FEWEST_PIXELS && self.cloud.points.len() <= POINTS_PER_PIXEL * pixels
+    }
+
+    /// Whether somebody wants to see the grid at work.
+    fn is_about_cells(&self) -> bool {
+        let counts = [Diagnostic::Tests, Diagnostic::Cells];
+        self.cells_per_pass != 0 || self.diagnostics.iter().any(|shown| counts.contains(shown))
     }
 
     /// Parameters of `disc_count` for one tile of the picture. The grid says where the points are.

@@ -244,7 +244,8 @@ pub(crate) static RENDER: Table = Table {
             Kind::Choice(&["grid", "discs", "auto"]),
             Value("\"auto\""),
             "How camera rays find their first hit: cell after cell of the grid, or each tile of \
-             pixels among the points whose discs cover it. Changes no pixel.",
+             pixels among the points whose discs cover it. `auto` takes discs for up to 4 points a \
+             pixel, unless cells are limited or counted. Changes no pixel.",
         ),
     ],
 };
