@@ -8,6 +8,7 @@
 mod camera;
 mod diagnostic;
 mod discs;
+mod isolated;
 mod picture;
 
 pub use camera::View;
@@ -75,6 +76,8 @@ pub struct Plan {
     pub window: Window,
     /// Names of the objects, for messages.
     pub names: Vec<String>,
+    /// How many isolated points each object lost (`drop_isolated`).
+    pub isolated: Vec<u64>,
     /// Diagnostics that the film is to have, each at most once. None at first.
     pub diagnostics: Vec<Diagnostic>,
     transparent: bool,
@@ -132,17 +135,18 @@ impl Plan {
         up: Up,
     ) -> Result<Self, PlanError> {
         assert_eq!(scene.objects.len(), sets.len(), "one point set an object");
+        let (sets, isolated) = drop_isolated(scene, sets)?;
         let image_size = scene.image.size;
         let window = checked_crop(crop, image_size)?;
         let world: Vec<Vec<[f64; 3]>> = scene
             .objects
             .iter()
-            .zip(sets)
+            .zip(&sets)
             .map(|(object, set)| set.positions.iter().map(|&p| object.transform.apply(p)).collect())
             .collect();
         let object_points: Vec<ObjectPoints<'_>> = world
             .iter()
-            .zip(sets)
+            .zip(&sets)
             .map(|(positions, set)| ObjectPoints { positions, file_index: &set.file_index })
             .collect();
         let cloud = Cloud::new(&object_points)?;
@@ -152,7 +156,7 @@ impl Plan {
             .zip(0..)
             .map(|(object, index)| fit_params(object, index, &cloud))
             .collect();
-        let (objects, colors) = object_infos(scene, sets, &cloud)?;
+        let (objects, colors) = object_infos(scene, &sets, &cloud)?;
         let camera = scene
             .camera
             .unwrap_or_else(|| camera::frame(world.iter().flatten(), cloud.bounds, image_size, up));
@@ -178,6 +182,7 @@ impl Plan {
             image_size,
             window,
             names: scene.objects.iter().map(|object| object.name.clone()).collect(),
+            isolated,
             diagnostics: Vec::new(),
             transparent: scene.image.transparent,
             provenance: film::Provenance {
@@ -248,6 +253,27 @@ pub fn checked_crop(crop: Option<Window>, image: [u32; 2]) -> Result<Window, Pla
             && crop.origin[axis].checked_add(crop.size[axis]).is_some_and(|end| end <= image[axis])
     });
     if inside { Ok(crop) } else { Err(PlanError::Crop { crop, image }) }
+}
+
+/// The sets without the points that their objects drop, and how many those are.
+fn drop_isolated(
+    scene: &Scene,
+    sets: &[Arc<PointSet>],
+) -> Result<(Vec<Arc<PointSet>>, Vec<u64>), PlanError> {
+    let mut kept = Vec::new();
+    let mut counts = Vec::new();
+    for (object, set) in scene.objects.iter().zip(sets) {
+        let deviations = object.surface.drop_isolated;
+        let near = match deviations > 0.0 {
+            true => isolated::without_isolated(set, object.surface.neighbors, deviations)?,
+            false => None,
+        };
+        let (set, dropped) =
+            near.map_or_else(|| (Arc::clone(set), 0), |(set, dropped)| (Arc::new(set), dropped));
+        kept.push(set);
+        counts.push(dropped);
+    }
+    Ok((kept, counts))
 }
 
 fn kind_of(polynomial: Polynomial) -> u32 {

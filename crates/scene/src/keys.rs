@@ -400,6 +400,13 @@ pub(crate) static SURFACE: Table = Table {
             Value("1.0"),
             "Width w of the weights exp(-d²/(w h)²): wider smooths noise, narrower keeps detail.",
         ),
+        key(
+            "drop_isolated",
+            Kind::Number(numbers(0.0, 100.0, "standard deviations")),
+            Value("0.0"),
+            "Drop points whose mean distance to their neighbours is over the mean of all points' by \
+             more than this, and at least twice that mean; 0 drops none. How many is said.",
+        ),
         announced("boundary_clip", "Cut the surface at the rim of an open point set."),
         announced("normals", "Take the normals from the file."),
     ],

@@ -284,6 +284,7 @@ impl Surface {
             feature_size: to_number(&table.value("feature_size"))
                 .map_or(FeatureSize::Adaptive, FeatureSize::Constant),
             trust: table.number("trust"),
+            drop_isolated: table.number("drop_isolated"),
             weight_width: table.number("weight_width"),
             close_gaps: table.flag("close_gaps"),
             refine: match table.text("refine").as_str() {

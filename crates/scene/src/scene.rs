@@ -150,6 +150,9 @@ pub struct Surface {
     pub feature_size: FeatureSize,
     /// Trust radius over feature size, b/h, 0.5 to 1.
     pub trust: f64,
+    /// Points are dropped whose mean distance to their neighbours is over the mean of all points' by more
+    /// than so many standard deviations, 0 to 100; 0 drops none.
+    pub drop_isolated: f64,
     /// Width of the Gaussian weights over feature size, 0.25 to 4.
     pub weight_width: f64,
     /// Whether single trust radii grow, at most to the feature size, where neighbours leave a gap.

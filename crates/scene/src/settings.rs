@@ -109,6 +109,7 @@ fn write_surface(out: &mut String, surface: &Surface) -> fmt::Result {
             writeln!(out, "max_iterations = {max_iterations}")?;
         }
     }
+    writeln!(out, "drop_isolated = {:?}", surface.drop_isolated)?;
     writeln!(out, "weight_width = {:?}", surface.weight_width)?;
     writeln!(out, "close_gaps = {}", surface.close_gaps)
 }

@@ -58,9 +58,12 @@ fn render(
 ) -> Result<(), Failure> {
     let started = Instant::now();
     let sets = input.read_points(progress)?;
-    let dropped = sets.iter().map(|set| set.non_finite).sum();
+    let non_finite: u64 = sets.iter().map(|set| set.non_finite).sum();
     let mut plan = input.plan(&sets, args.crop, progress)?;
     plan.diagnostics = diagnostics;
+    for (name, count) in plan.names.iter().zip(&plan.isolated).filter(|(_, count)| **count > 0) {
+        progress.note(&format!("object '{name}': dropped {count} isolated points"));
+    }
     drop(sets);
     let read = started.elapsed();
     let mut built = engine.build(&plan, progress)?;
@@ -78,7 +81,7 @@ fn render(
             frame: &frame,
             trace: &[frame.trace],
             wall: &[wall],
-            dropped,
+            dropped: non_finite + plan.isolated.iter().sum::<u64>(),
         });
         files::write_json(path, &row)?;
     }

@@ -1,0 +1,101 @@
+//! Points that lie apart from all others: stray returns of a scanner, birds over a terrain.
+//!
+//! Statistical removal after Rusu et al., Towards 3D Point Cloud Based Object Maps for Household
+//! Environments (2008), section 4: a point is dropped whose mean distance to its neighbours is over the
+//! mean of all points' by more than so many standard deviations, and at least twice that mean: on even
+//! points deviations are so small that corners would go.
+
+use points::{Cloud, CloudError, NeighborSearch, ObjectPoints, PointSet};
+
+/// The set without its isolated points, and how many those are; `None` where there are none.
+///
+/// # Errors
+/// Points that f32 cannot bear.
+pub(crate) fn without_isolated(
+    set: &PointSet,
+    neighbors: u32,
+    deviations: f64,
+) -> Result<Option<(PointSet, u64)>, CloudError> {
+    let object = ObjectPoints { positions: &set.positions, file_index: &set.file_index };
+    let cloud = Cloud::new(&[object])?;
+    let count = cloud.points.len();
+    let k = (neighbors as usize).min(count.saturating_sub(1)).max(1);
+    let lists = NeighborSearch::new(&cloud.points, 0).nearest(0..count, k);
+    let distances: Vec<f64> = cloud
+        .order
+        .iter()
+        .map(|&slot| {
+            let at = cloud.points[slot as usize].position;
+            let list = &lists[slot as usize * k..(slot as usize + 1) * k];
+            let others: Vec<f64> = list
+                .iter()
+                .filter_map(|&other| cloud.points.get(other as usize))
+                .map(|other| distance(at, other.position))
+                .collect();
+            others.iter().sum::<f64>() / (others.len() as f64).max(1.0)
+        })
+        .collect();
+    let mean = distances.iter().sum::<f64>() / count as f64;
+    let variance = distances.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / count as f64;
+    let limit = (mean + deviations * variance.sqrt()).max(2.0 * mean);
+    let dropped = distances.iter().filter(|&&d| d > limit).count() as u64;
+    if dropped == 0 {
+        return Ok(None);
+    }
+    let near = || distances.iter().map(|&d| d <= limit);
+    let kept = PointSet {
+        positions: keep(&set.positions, near()),
+        file_index: keep(&set.file_index, near()),
+        colors: set.colors.as_ref().map(|colors| keep(colors, near())),
+        color_encoding: set.color_encoding,
+        format: set.format.clone(),
+        non_finite: set.non_finite,
+        ..PointSet::default()
+    };
+    Ok(Some((kept, dropped)))
+}
+
+fn keep<T: Copy>(values: &[T], near: impl Iterator<Item = bool>) -> Vec<T> {
+    values.iter().zip(near).filter_map(|(&value, near)| near.then_some(value)).collect()
+}
+
+fn distance(a: [f32; 3], b: [f32; 3]) -> f64 {
+    [0, 1, 2].map(|i| f64::from(b[i] - a[i]).powi(2)).iter().sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid_and(strays: &[[f64; 3]]) -> PointSet {
+        let mut positions: Vec<[f64; 3]> =
+            (0..400).map(|i| [f64::from(i % 20), f64::from(i / 20), 0.0]).collect();
+        positions.splice(100..100, strays.iter().copied());
+        let file_index = (0..positions.len() as u32).collect();
+        let colors = Some(positions.iter().map(|p| [p[2] as f32, 0.0, 0.0]).collect());
+        PointSet { positions, file_index, colors, ..PointSet::default() }
+    }
+
+    #[test]
+    fn strays_go_with_their_colors_and_the_rest_keeps_its_indices() {
+        let set = grid_and(&[[3.0, 3.0, 50.0], [100.0, 0.0, 7.0]]);
+        let (kept, dropped) = without_isolated(&set, 16, 4.0).expect("bearable").expect("strays");
+        assert_eq!((kept.len(), dropped), (400, 2));
+        assert_eq!(kept.file_index[99..102], [99, 102, 103]);
+        assert!(kept.colors.expect("colours").iter().all(|color| color[0] == 0.0));
+    }
+
+    #[test]
+    fn even_points_and_coinciding_ones_all_stay() {
+        assert!(without_isolated(&grid_and(&[]), 16, 4.0).expect("bearable").is_none());
+        let same = PointSet {
+            positions: vec![[1.0; 3]; 50],
+            file_index: (0..50).collect(),
+            ..PointSet::default()
+        };
+        assert!(without_isolated(&same, 16, 4.0).expect("bearable").is_none());
+        let one =
+            PointSet { positions: vec![[1.0; 3]], file_index: vec![0], ..PointSet::default() };
+        assert!(without_isolated(&one, 16, 4.0).expect("bearable").is_none());
+    }
+}
