@@ -1,6 +1,7 @@
 // surface_hit: where each ray that has ended met the polynomial it hit.
 //
 // reads   the ray state, polynomials, objects
+//         grid, cells, slots   the polynomials around a hit, where normals are blended
 // writes  hits             accepted, or pending where the object's hits are refined; a hit that stands
 //                          already is left alone; must be zero before the first time
 //         live             how many are pending
@@ -10,16 +11,35 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #include "layout.glsl"
+#include "grid.glsl"
 #include "polynomial.glsl"
+#include "blend.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = TILE_GROUP) in;
+layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
+layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
+layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
 layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
 layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
 layout(push_constant) uniform Push { TraceParams params; };
+
+#define MOST_BLENDED 4096u // points of a cell that are asked: a cell of very many says enough
+
+// The mean of the normals of the object's polynomials around x, by their weights.
+vec3 blended_normal(vec3 x, vec3 normal, uint object) {
+    uvec2 range = cells[cell_id(grid, cell_of(grid, x))];
+    uint end = min(range.y, range.x + MOST_BLENDED);
+    vec3 sum = 1e-6 * normal; // where nothing has a weight, the hit's own
+    for (uint i = range.x; i < end; ++i) {
+        Polynomial p = polynomials[slots[i]];
+        if (p.object == object) sum += weighted_normal(p, x, normal);
+    }
+    return normalize3(sum);
+}
 
 void main() {
     uvec2 pixel = tile_pixel();
@@ -37,6 +57,8 @@ void main() {
     vec3 y, normal;
     surface_at(ray.origin, ray.direction, ray.hit_t, p, y, normal);
     bool refined = objects[p.object].max_iterations > 0u;
-    hits[at] = Hit(p.center_trust.xyz + y, ray.hit_t, normal, iterations | (refined ? HIT_PENDING : HIT_ACCEPTED));
+    vec3 x = p.center_trust.xyz + y;
+    if (objects[p.object].blends != 0u && !refined) normal = blended_normal(x, normal, p.object);
+    hits[at] = Hit(x, ray.hit_t, normal, iterations | (refined ? HIT_PENDING : HIT_ACCEPTED));
     if (refined) atomicAdd(live, 1u);
 }

@@ -215,8 +215,8 @@ struct ObjectInfo {      // 48 bytes
     float tolerance;     // 28  of the refinement, over h
     uint slot_count;     // 32
     float weight_scale;  // 36  h over the width of the weights
-    uint pad0;           // 40
-    uint pad1;           // 44
+    uint blends;         // 40  1: normals are blended over the polynomials around a hit
+    uint pad;            // 44
 };
 
 struct Light {           // 32 bytes

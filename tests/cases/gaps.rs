@@ -97,3 +97,18 @@ fn normals_of_a_noisy_sphere_get_better_with_more_neighbors_and_wider_weights() 
     println!("weight_width 0.6, 1, 2: {narrow:.2}, {:.2}, {wide:.2} degrees", curve[1]);
     assert!(wide < curve[1] && curve[1] < narrow, "{narrow}, {}, {wide}", curve[1]);
 }
+
+/// Blended normals: the seams of `incomplete` polynomials go, and `full` ones lose nothing.
+#[test]
+fn blended_normals_hide_seams_and_keep_accuracy() {
+    let view = "[camera]\neye = [0.9, 0.7, 2.4]\ntarget = [0.0, 0.0, 0.0]\nvertical_fov = 50.0\n\
+                [image]\nsize = [120, 90]";
+    let sphere = harness::fibonacci_sphere(10_000);
+    let error = |settings: &str| normal_error(&render(view, settings, &sphere));
+    let incomplete = error("polynomial = \"incomplete\"");
+    let blended = error("polynomial = \"incomplete\", normals = \"blended\"");
+    let full = error("normals = \"blended\"");
+    println!("incomplete {incomplete:.3}, blended {blended:.3}; full blended {full:.4} degrees");
+    assert!(blended < 0.7 * incomplete, "{incomplete} -> {blended}");
+    assert!(full < 0.001, "{full}"); // half of the stored normals are within 0.0006
+}

@@ -449,15 +449,15 @@ pub struct ObjectInfo {
     pub slot_count: u32,
     /// h over the width of the weights.
     pub weight_scale: f32,
+    /// 1: normals are blended over the polynomials around a hit.
+    pub blends: u32,
     /// Unused.
-    pub pad0: u32,
-    /// Unused.
-    pub pad1: u32,
+    pub pad: u32,
 }
 gpu_layout!(ObjectInfo, 48, {
     albedo: 0, first_color: 12, first_slot: 16, polynomial: 20, max_iterations: 24, tolerance: 28,
-    slot_count: 32, weight_scale: 36, pad0: 40,
-    pad1: 44,
+    slot_count: 32, weight_scale: 36, blends: 40,
+    pad: 44,
 });
 
 /// One light.

@@ -22,7 +22,7 @@ use kernels::layout::{
 };
 use points::{Cloud, CloudError, ObjectPoints, PointSet};
 pub use scene::Primary;
-use scene::{Albedo, FeatureSize, Light, Object, Polynomial, Refine, Scene, Up};
+use scene::{Albedo, FeatureSize, Light, Normals, Object, Polynomial, Refine, Scene, Up};
 use std::sync::Arc;
 
 /// Albedo of objects whose points have no colours and whose material names none.
@@ -336,8 +336,8 @@ fn object_infos(
             },
             slot_count: cloud.objects[index].count,
             weight_scale: (1.0 / object.surface.weight_width) as f32,
-            pad0: 0,
-            pad1: 0,
+            blends: u32::from(object.surface.normals == Normals::Blended),
+            pad: 0,
         });
         if let Some(own) = own {
             colors.extend(cloud.by_slot(index, own).iter().flatten());

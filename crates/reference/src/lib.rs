@@ -4,6 +4,7 @@
 //! in f64 it says how far both are from the truth. It is also what renders where no Vulkan exists.
 #![forbid(unsafe_code)]
 
+pub mod blend;
 pub mod camera_rays;
 pub mod disc;
 pub mod disc_bin;
@@ -186,7 +187,14 @@ impl<R: Real> Reference<R> {
         let mut iterations = 0;
         while let Some(hit) = surface_hit(ray, &self.polynomials) {
             let object = self.polynomials[ray.hit_slot as usize].object;
-            if plan.objects[object as usize].max_iterations == 0 {
+            let info = &plan.objects[object as usize];
+            if info.max_iterations == 0 {
+                let mut hit = hit;
+                if info.blends != 0 {
+                    let (x, n) = (hit.position, hit.normal);
+                    let (lists, polynomials) = (&self.lists, &self.polynomials);
+                    hit.normal = blend::blended_normal(grid, lists, polynomials, x, n, object);
+                }
                 return (Some((hit, object)), iterations);
             }
             match surroundings.refine(ray, hit) {

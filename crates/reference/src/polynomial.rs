@@ -50,7 +50,8 @@ fn nearest_approach<R: Real>(o: V3<R>, d: V3<R>, center: V3<R>) -> (R, V3<R>) {
 }
 
 impl<R: Real> Polynomial<R> {
-    fn apply_curvature(&self, v: V3<R>) -> V3<R> {
+    /// M v
+    pub fn apply_curvature(&self, v: V3<R>) -> V3<R> {
         let [xx, yy, zz] = self.diagonal.0;
         let [xy, xz, yz] = self.off.0;
         V3([

@@ -244,7 +244,7 @@ impl Renderer {
             self.recorder.fill(&self.live, 0, 8, 0);
             let io = SurfaceHitIo {
                 state: &self.state.current,
-                polynomials: &self.surfaces.polynomials,
+                surfaces: &self.surfaces,
                 objects: &self.objects,
                 hits: &self.hits,
                 live: &self.live,

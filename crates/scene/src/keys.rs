@@ -408,7 +408,13 @@ pub(crate) static SURFACE: Table = Table {
              more than this, and at least twice that mean; 0 drops none. How many is said.",
         ),
         announced("boundary_clip", "Cut the surface at the rim of an open point set."),
-        announced("normals", "Take the normals from the file."),
+        key(
+            "normals",
+            Kind::Choice(&["polynomial", "blended"]),
+            Value("\"polynomial\""),
+            "Normal of a hit: the hit polynomial's, or blended over all polynomials around it, which \
+             hides the seams between them. Refined hits have none.",
+        ),
     ],
 };
 

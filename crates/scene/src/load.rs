@@ -5,9 +5,9 @@ use crate::error::{Problem, Source};
 use crate::keys::{self, SCENE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
-    Albedo, Background, Camera, FeatureSize, Fresnel, ImageSettings, Light, Material, Object,
-    Polynomial, Primary, RayLoop, Refine, RenderSettings, Scene, SceneError, Surface, Transform,
-    Up,
+    Albedo, Background, Camera, FeatureSize, Fresnel, ImageSettings, Light, Material, Normals,
+    Object, Polynomial, Primary, RayLoop, Refine, RenderSettings, Scene, SceneError, Surface,
+    Transform, Up,
 };
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -156,7 +156,7 @@ fn point_file_document(points: &Path, up: Up) -> Node {
         "{{ background = {{ color = [0.18, 0.18, 0.18] }}, lights = [\
          {{ kind = \"directional\", direction = {key}, irradiance = [2.6, 2.6, 2.6] }},\
          {{ kind = \"directional\", direction = {fill}, irradiance = [0.7, 0.7, 0.7] }}\
-         ], objects = [{{ points = {} }}] }}",
+         ], objects = [{{ points = {}, surface = {{ normals = \"blended\" }} }}] }}",
         crate::settings::quoted(&points.to_string_lossy())
     );
     parse_value(&text, Origin::Given).unwrap_or_else(|| unreachable!("not TOML: {text}"))
@@ -287,6 +287,10 @@ impl Surface {
             drop_isolated: table.number("drop_isolated"),
             weight_width: table.number("weight_width"),
             close_gaps: table.flag("close_gaps"),
+            normals: match table.text("normals").as_str() {
+                "blended" => Normals::Blended,
+                _ => Normals::Polynomial,
+            },
             refine: match table.text("refine").as_str() {
                 "project" => Refine::Project {
                     tolerance: table.number("tolerance"),

@@ -44,7 +44,6 @@ pub(crate) const NOT_BUILT: &[NotBuilt] = &[
     key("objects.filter"),
     key("objects.volume"),
     key("objects.surface.boundary_clip"),
-    key("objects.surface.normals"),
     value("objects.material.kind", When::Is(&["mirror", "glass"]), "use \"diffuse\""),
     key("objects.material.texture"),
     key("objects.material.texture_axis"),

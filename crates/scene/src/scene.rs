@@ -157,8 +157,19 @@ pub struct Surface {
     pub weight_width: f64,
     /// Whether single trust radii grow, at most to the feature size, where neighbours leave a gap.
     pub close_gaps: bool,
+    /// Whose normal a hit has; refined hits have that of the surface they are on.
+    pub normals: Normals,
     /// What becomes of a hit with a stored polynomial.
     pub refine: Refine,
+}
+
+/// Whose normal a hit has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Normals {
+    /// That of the polynomial that was hit, as in the paper.
+    Polynomial,
+    /// The weighted mean over the polynomials whose trust balls hold the hit.
+    Blended,
 }
 
 /// What becomes of a hit with a stored polynomial (docs/method.md, section 2).

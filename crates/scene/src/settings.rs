@@ -1,7 +1,8 @@
 //! A scene as canonical TOML, for the header of the pictures it makes.
 
 use crate::{
-    Albedo, FeatureSize, Fresnel, Light, Object, Polynomial, Refine, RenderSettings, Scene, Surface,
+    Albedo, FeatureSize, Fresnel, Light, Normals, Object, Polynomial, Refine, RenderSettings,
+    Scene, Surface,
 };
 use std::fmt::{self, Write};
 
@@ -109,6 +110,11 @@ fn write_surface(out: &mut String, surface: &Surface) -> fmt::Result {
             writeln!(out, "max_iterations = {max_iterations}")?;
         }
     }
+    let normals = match surface.normals {
+        Normals::Polynomial => "polynomial",
+        Normals::Blended => "blended",
+    };
+    writeln!(out, "normals = \"{normals}\"")?;
     writeln!(out, "drop_isolated = {:?}", surface.drop_isolated)?;
     writeln!(out, "weight_width = {:?}", surface.weight_width)?;
     writeln!(out, "close_gaps = {}", surface.close_gaps)

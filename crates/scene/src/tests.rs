@@ -55,6 +55,7 @@ trust = 0.75
 refine = "project"
 tolerance = 2e-5
 max_iterations = 12
+normals = "blended"
 drop_isolated = 3.5
 weight_width = 1.5
 close_gaps = false
@@ -140,6 +141,7 @@ fn every_built_key_is_read() {
             polynomial: Polynomial::Incomplete,
             feature_size: FeatureSize::Constant(0.25),
             trust: 0.75,
+            normals: Normals::Blended,
             drop_isolated: 3.5,
             weight_width: 1.5,
             close_gaps: false,
@@ -168,6 +170,7 @@ fn what_is_left_out_is_the_contracts_default() {
         polynomial: Polynomial::Full,
         feature_size: FeatureSize::Adaptive,
         trust: 0.6,
+        normals: Normals::Polynomial,
         drop_isolated: 0.0,
         weight_width: 1.0,
         close_gaps: true,
@@ -269,7 +272,6 @@ fn what_is_not_built_says_so_and_is_not_ignored() {
         ("objects.0.material.ior=1.4", "objects[0].material.ior"),
         ("objects.0.material.priority=0", "objects[0].material.priority"),
         ("objects.1.volume.scalar=density", "objects[1].volume"),
-        ("objects.0.surface.normals=true", "objects[0].surface.normals"),
         ("objects.0.surface.boundary_clip=true", "objects[0].surface.boundary_clip"),
     ] {
         let error = error_with(FULL, &[set]);

@@ -4,15 +4,17 @@ use super::{bind_state, over_pixels, state_bindings};
 use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_OBJECTS, STATE_IN, TRACE_HITS, TRACE_LIVE, TRACE_POLYNOMIALS, TraceParams,
+    SHADE_OBJECTS, STATE_IN, TRACE_CELLS, TRACE_HITS, TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS,
+    TRACE_SLOTS, TraceParams,
 };
 use kernels::spirv;
+use points::device::Surfaces;
 use std::sync::Arc;
 
 /// What the pass works on.
 pub(crate) struct SurfaceHitIo<'a> {
     pub state: &'a StateImages,
-    pub polynomials: &'a Buffer,
+    pub surfaces: &'a Surfaces,
     pub objects: &'a Buffer,
     /// Zero before a tile's first time.
     pub hits: &'a Buffer,
@@ -30,7 +32,15 @@ impl SurfaceHit {
 
     pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
         let mut bindings = state_bindings(STATE_IN).to_vec();
-        let buffers = [TRACE_POLYNOMIALS, TRACE_LIVE, SHADE_OBJECTS, TRACE_HITS];
+        let buffers = [
+            TRACE_INFO,
+            TRACE_CELLS,
+            TRACE_SLOTS,
+            TRACE_POLYNOMIALS,
+            TRACE_LIVE,
+            SHADE_OBJECTS,
+            TRACE_HITS,
+        ];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         let params = size_of::<TraceParams>();
         let kernel = Kernel::new(device, Self::NAME, &spirv::surface_hit(), &bindings, params)?;
@@ -40,7 +50,10 @@ impl SurfaceHit {
     /// Records the hits of a tile whose rays have all ended.
     pub fn record(&self, rec: &mut Recorder, io: SurfaceHitIo<'_>, params: &TraceParams) {
         bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, io.state)
-            .buffer(TRACE_POLYNOMIALS, io.polynomials)
+            .buffer(TRACE_INFO, &io.surfaces.grid_info)
+            .buffer(TRACE_CELLS, &io.surfaces.cells)
+            .buffer(TRACE_SLOTS, &io.surfaces.slots)
+            .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
             .buffer(TRACE_LIVE, io.live)
             .buffer(SHADE_OBJECTS, io.objects)
             .buffer(TRACE_HITS, io.hits)

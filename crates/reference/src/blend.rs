@@ -1,0 +1,45 @@
+//! Twin of `glsl/shared/blend.glsl` and of what `surface_hit` does with it.
+
+use crate::grid::Grid;
+use crate::grid_build::CellLists;
+use crate::polynomial::Polynomial;
+use crate::real::{Real, V3};
+
+const OTHER_SHEET: f64 = 0.1;
+const MOST_BLENDED: usize = 4096;
+
+/// The unit normal of p at x, turned to the side of `towards`, times its weight.
+fn weighted_normal<R: Real>(p: &Polynomial<R>, x: V3<R>, towards: V3<R>) -> V3<R> {
+    let (zero, one) = (R::of(0.0), R::of(1.0));
+    let b = p.trust;
+    let y = x - p.center;
+    let curved = p.apply_curvature(y);
+    let gradient = p.gradient - curved.times(R::of(2.0));
+    let steepness = gradient.dot(gradient).sqrt();
+    let height = (p.gradient.dot(y) - p.offset) - y.dot(curved);
+    let inner = one - y.dot(y) / (b * b);
+    let apart = height / (steepness * (R::of(OTHER_SHEET) * b));
+    let sheet = one - apart * apart;
+    let weight = if inner > zero && sheet > zero { (inner * inner) * sheet } else { zero };
+    let normal = gradient.over(steepness);
+    normal.times(if normal.dot(towards) < zero { -weight } else { weight })
+}
+
+/// The mean of the normals of the object's polynomials around x, by their weights.
+pub fn blended_normal<R: Real>(
+    grid: &Grid<R>,
+    lists: &CellLists,
+    polynomials: &[Polynomial<R>],
+    x: V3<R>,
+    normal: V3<R>,
+    object: u32,
+) -> V3<R> {
+    let [first, end] =
+        lists.cells[grid.cell_id(grid.cell_of(x)) as usize].map(|entry| entry as usize);
+    lists.slots[first..end.min(first + MOST_BLENDED)]
+        .iter()
+        .map(|&slot| &polynomials[slot as usize])
+        .filter(|p| p.object == object)
+        .fold(normal.times(R::of(1e-6)), |sum, p| sum + weighted_normal(p, x, normal))
+        .normalize()
+}
