@@ -1,4 +1,5 @@
-//! The same scene gives the same file: from run to run, over numbers of threads, over cells a pass,
+//! The same scene gives the same file: from run to run, over numbers of threads, by discs (the default
+//! at this size) and through the grid with any number of cells a pass,
 //! and on the CPU without Vulkan.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
@@ -37,7 +38,7 @@ fn every_way_to_render_gives_the_same_file() {
             .arg(&points)
             .arg("-o")
             .arg(&out)
-            .args(["--size", "160x120"])
+            .args(["--size", "256x192"])
             .args(extra)
             .env("LP_NUM_THREADS", threads)
             .env("POINTILLIST_VALIDATION", "1")

@@ -16,7 +16,7 @@ const FRAMING_FILL: f64 = 0.88;
 /// height c and distance D before the origin where y − c ≤ t (z + D), and likewise on the other
 /// sides; so the extremes of ±x − t z and ±y − t z give eye and distance in closed form.
 pub(crate) fn frame<'a>(
-    points: impl Iterator<Item = &'a [f64; 3]>,
+    points: impl Iterator<Item = &'a [f64; 3]> + Clone,
     bounds: [[f64; 3]; 2],
     image_size: [u32; 2],
     up: Up,
@@ -36,7 +36,7 @@ pub(crate) fn frame<'a>(
     let aspect = f64::from(image_size[0]) / f64::from(image_size[1]);
     let tangents = [half_tangent * aspect, half_tangent];
     let mut extremes = [[f64::NEG_INFINITY; 2]; 2]; // of +x, −x; of +y, −y
-    for &point in points {
+    for &point in points.clone() {
         let p = DVec3::from(point) - center;
         let depth = p.dot(forward);
         for (axis, at) in [p.dot(right), p.dot(above)].into_iter().enumerate() {
@@ -54,9 +54,36 @@ pub(crate) fn frame<'a>(
     let half_diagonal = (0.5 * (DVec3::from(bounds[1]) - DVec3::from(bounds[0]))).length();
     let distance = distance.max(1.05 * half_diagonal); // points along one line of sight
     let distance = if distance > 0.0 { distance } else { 1.0 };
+    let shift = [0, 1].map(|axis| {
+        let side = [right, above][axis];
+        let from_center = |p: &[f64; 3]| DVec3::from(*p) - center;
+        let places =
+            points.clone().map(from_center).map(|p| (p.dot(side), p.dot(forward) + distance));
+        balance(places, shift[axis])
+    });
     let target = center + shift[0] * right + shift[1] * above;
     let eye = target - distance * forward;
     Camera { eye: eye.into(), target: target.into(), up: up.into(), vertical_fov: FRAMING_FOV }
+}
+
+/// The shift c at which the extremes of (at − c)/depth, in the picture, are equally far from its middle.
+///
+/// Only the fuller direction is as full as it may be; along the other the eye could stand anywhere within
+/// a range. Newton's method: near its root the difference is linear in c, unless an extreme changes
+/// hands, and few steps see to that.
+fn balance(places: impl Iterator<Item = (f64, f64)> + Clone, start: f64) -> f64 {
+    let mut shift = start;
+    for _ in 0..6 {
+        let extreme = |sign: f64| {
+            places.clone().fold((f64::NEG_INFINITY, 1.0), |best, (at, depth)| {
+                let reach = sign * (at - shift) / depth;
+                if reach > best.0 { (reach, depth) } else { best }
+            })
+        };
+        let (high, low) = (extreme(1.0), extreme(-1.0));
+        shift += (high.0 - low.0) / (1.0 / high.1 + 1.0 / low.1);
+    }
+    shift
 }
 
 /// A camera in the forms that kernels and files take.
@@ -186,6 +213,11 @@ mod tests {
                 assert!(low > margin - 1e-4 && high < 1.0 - margin + 1e-4, "{inside:?}");
                 low < margin + 1e-4 && high > 1.0 - margin - 1e-4
             };
+            let middle = |axis: usize| {
+                let all = || inside.iter().map(|p| p[axis]);
+                0.5 * (all().fold(1.0, f32::min) + all().fold(0.0, f32::max))
+            };
+            assert!((0..2).all(|axis| (middle(axis) - 0.5).abs() < 1e-4), "{inside:?}");
             let [across, along] = [tight(0), tight(1)];
             assert!(across || along, "{inside:?}");
         }
