@@ -1,6 +1,7 @@
 // fit_polynomials: the local polynomial of each point of one batch (method, section 1).
 //
 // reads   points           every point of the scene
+//         sizes            h by slot, where params.feature_size asks for it
 //         neighbors        per point of the batch, nearest first, slots; NONE fills up
 // writes  polynomials      one a point, in world form
 //         outcomes         how each fit ended
@@ -23,6 +24,7 @@ layout(std430, binding = FIT_POINTS) readonly buffer Points { Point points[]; };
 layout(std430, binding = FIT_NEIGHBORS) readonly buffer Neighbors { uint neighbors[]; };
 layout(std430, binding = FIT_POLYNOMIALS) writeonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = FIT_OUTCOMES) writeonly buffer Outcomes { FitOutcome outcomes[]; };
+layout(std430, binding = FIT_SIZES) readonly buffer Sizes { float sizes[]; };
 layout(push_constant) uniform Push { FitParams params; };
 
 #define SMALLEST_FEATURE 1e-15   // h under this: every neighbour lies on the point
@@ -61,6 +63,7 @@ void main() {
     vec3 farthest = count > 0u ? neighbor_offset(list, max(count, 1u) - 1u, center) : vec3(0.0);
     float reach = sqrt(dot3(farthest, farthest));
     float h = params.feature_size > 0.0 ? params.feature_size : reach;
+    if (params.feature_size < 0.0) h = sizes[slot];
     bool spread_out = h > SMALLEST_FEATURE && reach > SMALLEST_FEATURE;
     float inverse_h = 1.0 / (spread_out ? h : 1.0);
 

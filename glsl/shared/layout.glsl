@@ -28,6 +28,7 @@
 #define FIT_NEIGHBORS 1
 #define FIT_POLYNOMIALS 2
 #define FIT_OUTCOMES 3
+#define FIT_SIZES 4
 
 // grid_count, grid_emit, grid_ranges
 #define GRID_INFO 0
@@ -126,7 +127,7 @@ struct FitParams {       // 40 bytes
     uint point_count;    //  4  in this batch
     uint neighbors;      //  8  entries a point in the list of neighbours
     uint polynomial;     // 12  FIT_FULL or FIT_INCOMPLETE: the first kind tried
-    float feature_size;  // 16  h for all points, or 0: the distance to the last neighbour
+    float feature_size;  // 16  h for all points; 0: the distance to the last neighbour; -1: sizes
     float trust;         // 20  b / h
     uint object;         // 24
     uint first_listed;   // 28  slot whose neighbours come first in the list

@@ -57,8 +57,8 @@ fn ties_and_random_spacing_are_the_same_to_the_bit() {
 }
 
 #[test]
-fn constant_feature_size_is_the_same_to_the_bit() {
-    for h in ["0.05", "0.001", "5.0"] {
+fn given_feature_sizes_are_the_same_to_the_bit() {
+    for h in ["0.05", "0.001", "5.0", "\"smoothed\""] {
         let settings =
             format!("{SMALL}\n[[objects]]\npoints = \"s.ply\"\nsurface = {{ feature_size = {h} }}");
         check(h, &settings, wavy_sheet(2_000));

@@ -76,6 +76,8 @@ constants! {
     FIT_POLYNOMIALS = 2;
     /// Binding of `fit_polynomials`: how each fit ended.
     FIT_OUTCOMES = 3;
+    /// Binding of `fit_polynomials`: h by slot, where it is smoothed.
+    FIT_SIZES = 4;
     /// Binding of the grid build: [`GridInfo`].
     GRID_INFO = 0;
     /// Binding of the grid build: polynomials.
@@ -246,7 +248,7 @@ pub struct FitParams {
     pub neighbors: u32,
     /// `FIT_FULL` or `FIT_INCOMPLETE`: the first kind tried.
     pub polynomial: u32,
-    /// h for all points, or 0: the distance to the last neighbour.
+    /// h for all points; 0: the distance to the last neighbour; −1: given for each.
     pub feature_size: f32,
     /// b / h.
     pub trust: f32,

@@ -9,6 +9,9 @@ use points::{Cloud, CloudError, NeighborSearch, ObjectPoints, PointSet};
 
 /// The set without its isolated points, and how many those are; `None` where there are none.
 ///
+/// Once points are gone, others may have lost the neighbours that kept them: rounds follow each other,
+/// with the limit of the first, until all that is left is near.
+///
 /// # Errors
 /// Points that f32 cannot bear.
 pub(crate) fn without_isolated(
@@ -16,34 +19,49 @@ pub(crate) fn without_isolated(
     neighbors: u32,
     deviations: f64,
 ) -> Result<Option<(PointSet, u64)>, CloudError> {
+    let distances = mean_distances(set, neighbors)?;
+    let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+    let squares = distances.iter().map(|d| (d - mean).powi(2)).sum::<f64>();
+    let deviation = (squares / distances.len() as f64).sqrt();
+    let limit = (mean + deviations * deviation).max(2.0 * mean);
+    let mut kept = without_far(set, &distances, limit);
+    while let Some(set) = &kept {
+        match without_far(set, &mean_distances(set, neighbors)?, limit) {
+            Some(fewer) => kept = Some(fewer),
+            None => break,
+        }
+    }
+    Ok(kept.map(|kept| {
+        let dropped = (set.len() - kept.len()) as u64;
+        (kept, dropped)
+    }))
+}
+
+/// Mean distance of each point to its neighbours, in the order of the set.
+fn mean_distances(set: &PointSet, neighbors: u32) -> Result<Vec<f64>, CloudError> {
     let object = ObjectPoints { positions: &set.positions, file_index: &set.file_index };
     let cloud = Cloud::new(&[object])?;
     let count = cloud.points.len();
     let k = (neighbors as usize).min(count.saturating_sub(1)).max(1);
     let lists = NeighborSearch::new(&cloud.points, 0).nearest(0..count, k);
-    let distances: Vec<f64> = cloud
-        .order
-        .iter()
-        .map(|&slot| {
-            let at = cloud.points[slot as usize].position;
-            let list = &lists[slot as usize * k..(slot as usize + 1) * k];
-            let others: Vec<f64> = list
-                .iter()
-                .filter_map(|&other| cloud.points.get(other as usize))
-                .map(|other| distance(at, other.position))
-                .collect();
-            others.iter().sum::<f64>() / (others.len() as f64).max(1.0)
-        })
-        .collect();
-    let mean = distances.iter().sum::<f64>() / count as f64;
-    let variance = distances.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / count as f64;
-    let limit = (mean + deviations * variance.sqrt()).max(2.0 * mean);
-    let dropped = distances.iter().filter(|&&d| d > limit).count() as u64;
-    if dropped == 0 {
-        return Ok(None);
-    }
+    let mean_distance = |&slot: &u32| {
+        let at = cloud.points[slot as usize].position;
+        let others: Vec<f64> = lists[slot as usize * k..(slot as usize + 1) * k]
+            .iter()
+            .filter_map(|&other| cloud.points.get(other as usize))
+            .map(|other| distance(at, other.position))
+            .collect();
+        others.iter().sum::<f64>() / (others.len() as f64).max(1.0)
+    };
+    Ok(cloud.order.iter().map(mean_distance).collect())
+}
+
+/// The set without points whose distance is over the limit; `None` where none is, or nothing would be
+/// left.
+fn without_far(set: &PointSet, distances: &[f64], limit: f64) -> Option<PointSet> {
     let near = || distances.iter().map(|&d| d <= limit);
-    let kept = PointSet {
+    let left = near().filter(|&near| near).count();
+    (left > 0 && left < set.len()).then(|| PointSet {
         positions: keep(&set.positions, near()),
         file_index: keep(&set.file_index, near()),
         colors: set.colors.as_ref().map(|colors| keep(colors, near())),
@@ -51,8 +69,7 @@ pub(crate) fn without_isolated(
         format: set.format.clone(),
         non_finite: set.non_finite,
         ..PointSet::default()
-    };
-    Ok(Some((kept, dropped)))
+    })
 }
 
 fn keep<T: Copy>(values: &[T], near: impl Iterator<Item = bool>) -> Vec<T> {

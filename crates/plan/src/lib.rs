@@ -292,6 +292,7 @@ fn fit_params(object: &Object, index: u32, cloud: &Cloud) -> FitParams {
         polynomial: kind_of(object.surface.polynomial),
         feature_size: match object.surface.feature_size {
             FeatureSize::Adaptive => 0.0,
+            FeatureSize::Smoothed => -1.0,
             FeatureSize::Constant(h) => h as f32,
         },
         trust: object.surface.trust as f32,

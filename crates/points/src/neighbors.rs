@@ -68,6 +68,35 @@ impl<'a> NeighborSearch<'a> {
         lists
     }
 
+    /// The feature size of each point, smoothed: the mean of its own distance to the farthest of k
+    /// neighbours and of theirs, in the units of the positions. A point apart from dense ones gets
+    /// a size like theirs, and no surface that spans the gap.
+    #[must_use]
+    pub fn smoothed_sizes(&self, k: usize) -> Vec<f32> {
+        let lists = self.nearest(0..self.points.len(), k);
+        let neighbors = |list: &'_ [u32]| -> Vec<usize> {
+            let slots = list.iter().take_while(|&&slot| slot != NONE);
+            slots.map(|slot| (slot - self.first_slot) as usize).collect()
+        };
+        let reach: Vec<f32> = lists
+            .par_chunks(k)
+            .zip(self.points)
+            .map(|(list, point)| {
+                let farthest = neighbors(list).last().map(|&other| self.points[other].position);
+                farthest.map_or(0.0, |other| squared_distance(point.position, other).sqrt())
+            })
+            .collect();
+        lists
+            .par_chunks(k)
+            .zip(&reach)
+            .map(|(list, own)| {
+                let others = neighbors(list);
+                others.iter().fold(*own, |sum, &other| sum + reach[other])
+                    / (others.len() + 1) as f32
+            })
+            .collect()
+    }
+
     fn query(&self, at: usize, k: usize, found: &mut Vec<Found>, stack: &mut Vec<(f32, u32)>) {
         found.clear();
         stack.clear();
@@ -261,6 +290,18 @@ mod tests {
         let same = points((0..200_000).map(|_| [0.25; 3]));
         let lists = NeighborSearch::new(&same, 0).nearest(0..same.len(), 4);
         assert_eq!(lists[..8], [1, 2, 3, 4, 0, 2, 3, 4]);
+    }
+
+    /// Beside a dense line, a point far off has a reach of 100 but a smoothed size near the others'.
+    #[test]
+    fn smoothed_sizes_follow_the_neighbours() {
+        let mut line: Vec<[f32; 3]> = (0..50).map(|i| [i as f32, 0.0, 0.0]).collect();
+        line.push([25.0, 100.0, 0.0]);
+        let line = points(line);
+        let sizes = NeighborSearch::new(&line, 0).smoothed_sizes(4);
+        assert_eq!(sizes[25], 2.0);
+        // Itself at 100 and a bit, its four neighbours at 2 each.
+        assert!((sizes[50] - (100.02 + 8.0) / 5.0).abs() < 0.1, "{}", sizes[50]);
     }
 
     #[test]

@@ -36,13 +36,14 @@ impl Neighborhood<'_> {
 }
 
 /// The polynomial of one point, one of `FIT_*`, and h. `list` holds its neighbours' slots, nearest
-/// first, `NONE` behind the last.
+/// first, `NONE` behind the last; `size` is its h, where that is smoothed.
 #[must_use]
 pub fn fit_polynomial<R: Real>(
     points: &[Point],
     slot: usize,
     list: &[u32],
     params: &FitParams,
+    size: Option<f32>,
 ) -> (Polynomial<R>, u32, R) {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let count = list.iter().position(|&neighbor| neighbor == NONE).unwrap_or(list.len());
@@ -50,7 +51,11 @@ pub fn fit_polynomial<R: Real>(
     let around = Neighborhood { points, list: &list[..count], center };
     let farthest = if count > 0 { around.offset::<R>(count - 1) } else { V3::splat(zero) };
     let reach = farthest.dot(farthest).sqrt();
-    let h = if params.feature_size > 0.0 { R::of_f32(params.feature_size) } else { reach };
+    let h = match size {
+        Some(size) => R::of_f32(size),
+        None if params.feature_size > 0.0 => R::of_f32(params.feature_size),
+        None => reach,
+    };
     let smallest = R::of(SMALLEST_FEATURE);
     let spread_out = h > smallest && reach > smallest;
     let inverse_h = one / if spread_out { h } else { one };

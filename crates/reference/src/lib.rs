@@ -68,18 +68,20 @@ impl<R: Real> Reference<R> {
         for (object, params) in cloud.objects.iter().zip(&plan.fits) {
             let range = object.range();
             let search = NeighborSearch::new(&cloud.points[range.clone()], object.first_slot);
+            let k = params.neighbors as usize;
+            let sizes = (params.feature_size < 0.0).then(|| search.smoothed_sizes(k));
             for first in (0..range.len()).step_by(FIT_BATCH) {
                 if watch.interrupted() {
                     return None;
                 }
                 let batch = first..range.len().min(first + FIT_BATCH);
-                let k = params.neighbors as usize;
                 let lists = search.nearest(batch.clone(), k);
                 let fits: Vec<_> = lists
                     .par_chunks(k)
                     .zip(range.start + first..range.start + batch.end)
                     .map(|(list, slot)| {
-                        fit_polynomials::fit_polynomial(&cloud.points, slot, list, params)
+                        let size = sizes.as_ref().map(|sizes| sizes[slot - range.start]);
+                        fit_polynomials::fit_polynomial(&cloud.points, slot, list, params, size)
                     })
                     .collect();
                 fitted.extend(fits);

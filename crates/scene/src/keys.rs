@@ -359,10 +359,11 @@ pub(crate) static SURFACE: Table = Table {
         ),
         key(
             "feature_size",
-            Kind::Either(&[Kind::Choice(&["adaptive"]), LENGTH]),
+            Kind::Either(&[Kind::Choice(&["adaptive", "smoothed"]), LENGTH]),
             Value("\"adaptive\""),
             "The length h that weights and trust radii are measured by: each point's distance to \
-             its farthest neighbour, or one length.",
+             its farthest neighbour, the mean of that over a point and its neighbours (for sets of \
+             very uneven density), or one length.",
         ),
         key(
             "trust",

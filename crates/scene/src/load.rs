@@ -281,8 +281,11 @@ impl Surface {
                 "incomplete" => Polynomial::Incomplete,
                 _ => Polynomial::Full,
             },
-            feature_size: to_number(&table.value("feature_size"))
-                .map_or(FeatureSize::Adaptive, FeatureSize::Constant),
+            feature_size: match to_number(&table.value("feature_size")) {
+                Some(length) => FeatureSize::Constant(length),
+                None if table.text("feature_size") == "smoothed" => FeatureSize::Smoothed,
+                None => FeatureSize::Adaptive,
+            },
             trust: table.number("trust"),
             drop_isolated: table.number("drop_isolated"),
             weight_width: table.number("weight_width"),

@@ -200,6 +200,8 @@ pub enum Polynomial {
 pub enum FeatureSize {
     /// Each point's distance to its farthest neighbour of the fit.
     Adaptive,
+    /// The mean of the adaptive one over a point and its neighbours.
+    Smoothed,
     /// One length for the object in scene units, 1e-12 to 1e15.
     Constant(f64),
 }

@@ -99,6 +99,7 @@ fn write_surface(out: &mut String, surface: &Surface) -> fmt::Result {
     writeln!(out, "polynomial = \"{polynomial}\"")?;
     match surface.feature_size {
         FeatureSize::Adaptive => writeln!(out, "feature_size = \"adaptive\"")?,
+        FeatureSize::Smoothed => writeln!(out, "feature_size = \"smoothed\"")?,
         FeatureSize::Constant(length) => writeln!(out, "feature_size = {length:?}")?,
     }
     writeln!(out, "trust = {:?}", surface.trust)?;

@@ -2,7 +2,9 @@
 
 use super::line;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
-use kernels::layout::{FIT_NEIGHBORS, FIT_OUTCOMES, FIT_POINTS, FIT_POLYNOMIALS, FitParams};
+use kernels::layout::{
+    FIT_NEIGHBORS, FIT_OUTCOMES, FIT_POINTS, FIT_POLYNOMIALS, FIT_SIZES, FitParams,
+};
 use kernels::spirv;
 use std::sync::Arc;
 
@@ -12,6 +14,8 @@ pub(crate) struct FitPolynomialsIo<'a> {
     pub neighbors: &'a Buffer,
     pub polynomials: &'a Buffer,
     pub outcomes: &'a Buffer,
+    /// h by slot, where it is smoothed; otherwise anything.
+    pub sizes: &'a Buffer,
 }
 
 /// The local polynomial of each point of one batch (method, section 1).
@@ -28,6 +32,7 @@ impl FitPolynomials {
             (FIT_NEIGHBORS, Binding::StorageBuffer),
             (FIT_POLYNOMIALS, Binding::StorageBuffer),
             (FIT_OUTCOMES, Binding::StorageBuffer),
+            (FIT_SIZES, Binding::StorageBuffer),
         ];
         let params = size_of::<FitParams>();
         let kernel = Kernel::new(device, Self::NAME, &spirv::fit_polynomials(), &bindings, params)?;
@@ -41,6 +46,7 @@ impl FitPolynomials {
             .buffer(FIT_NEIGHBORS, io.neighbors)
             .buffer(FIT_POLYNOMIALS, io.polynomials)
             .buffer(FIT_OUTCOMES, io.outcomes)
+            .buffer(FIT_SIZES, io.sizes)
             .push(params)
             .dispatch(line(params.point_count));
     }

@@ -130,6 +130,8 @@ fn fit_all(
     let count = cloud.points.len();
     let points = Buffer::from_slice(device, "points", &cloud.points)?;
     let outcomes = Buffer::new(device, "fit outcomes", (count * size_of::<FitOutcome>()) as u64)?;
+    let smoothed = fits.iter().any(|fit| fit.feature_size < 0.0);
+    let sizes = Buffer::new(device, "feature sizes", if smoothed { count as u64 * 4 } else { 4 })?;
     let pass = FitPolynomials::new(device)?;
     let mut recorder = Recorder::new(device)?;
     watch.stage("fitting surfaces", count as u64);
@@ -137,6 +139,10 @@ fn fit_all(
     for (object, fit) in cloud.objects.iter().zip(fits) {
         let range = object.range();
         let search = NeighborSearch::new(&cloud.points[range.clone()], object.first_slot);
+        if fit.feature_size < 0.0 {
+            let smoothed = search.smoothed_sizes(fit.neighbors as usize);
+            sizes.write(u64::from(object.first_slot) * 4, &smoothed)?;
+        }
         for first in (0..range.len()).step_by(FIT_BATCH) {
             if watch.interrupted() {
                 return Err(BuildError::Interrupted);
@@ -152,6 +158,7 @@ fn fit_all(
                 neighbors: &neighbors,
                 polynomials,
                 outcomes: &outcomes,
+                sizes: &sizes,
             };
             pass.record(&mut recorder, io, &params);
             recorder.submit()?;
