@@ -2,8 +2,8 @@
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "tests panic and print")]
 
 use harness::{
-    Bench, Rendered, assert_same_bits, fibonacci_sphere, plan_of, random, render_twin, set_of,
-    shared_data, wavy_sheet,
+    Bench, Rendered, assert_same_bits, assert_same_film, fibonacci_sphere, plan_of, random,
+    render_twin, set_of, shared_data, wavy_sheet,
 };
 use points::Unwatched;
 use reference::Reference;
@@ -81,6 +81,20 @@ fn projected_hits_are_the_same_to_the_bit() {
         let plan = plan(surface, positions);
         assert_same_bits(name, &bench.render(&plan), &render_twin(&plan));
     }
+}
+
+/// Rays whose hit was refined away go on through the grid, however their first hit was found.
+#[test]
+fn projected_hits_are_the_same_by_discs_and_through_the_grid() {
+    let bench = Bench::open();
+    let [grid, discs] = ["grid", "discs"].map(|primary| {
+        let text = format!(
+            "{VIEW}\n[render]\nprimary = \"{primary}\"\n[[objects]]\npoints = \"p.ply\"\n\
+             surface = {{ refine = \"project\" }}"
+        );
+        bench.render(&plan_of(&text, &[set_of(noisy_torus())])).film
+    });
+    assert_same_film("discs", &grid, &discs);
 }
 
 /// The exact surface does not depend on which polynomial was hit first: what `incomplete` loses at a
