@@ -3,15 +3,13 @@
 //! The kernel may stop after any cell and go on in the next pass with the same bits, so the twin
 //! goes the whole way at once.
 
+use crate::batch::{BATCH, test_batch};
 use crate::camera_rays::Ray;
 use crate::grid::{Grid, nearest_crossing};
 use crate::grid_build::CellLists;
 use crate::polynomial::Polynomial;
-use crate::real::{NO_HIT, Real};
+use crate::real::Real;
 use kernels::layout::NONE;
-
-/// Points tested before any is solved: the test uses the nearest hit of before the batch.
-const BATCH: usize = 32;
 
 /// Follows one ray until it ends.
 pub fn grid_trace<R: Real>(
@@ -24,25 +22,7 @@ pub fn grid_trace<R: Real>(
     while ray.cell != NONE {
         let [first, end] = lists.cells[ray.cell as usize].map(|at| at as usize);
         for batch in lists.slots[first..end].chunks(BATCH) {
-            ray.tests += batch.len() as u32;
-            let nearest = ray.hit_t;
-            for &slot in batch {
-                let p = &polynomials[slot as usize];
-                if p.near_trust_ball(o, d, nearest) {
-                    let t = p.intersect(o, d);
-                    let first_of_equals = || {
-                        polynomials
-                            .get(ray.hit_slot as usize)
-                            .is_some_and(|hit| (p.object, p.index) < (hit.object, hit.index))
-                    };
-                    let nearer =
-                        t < ray.hit_t || (t == ray.hit_t && t < R::of(NO_HIT) && first_of_equals());
-                    if nearer && t > ray.after {
-                        ray.hit_t = t;
-                        ray.hit_slot = slot;
-                    }
-                }
-            }
+            test_batch(ray, batch, polynomials);
         }
         let at = grid.cell_of_id(ray.cell);
         let exits = grid.crossings(at, o, d);

@@ -4,6 +4,7 @@
 //! in f64 it says how far both are from the truth. It is also what renders where no Vulkan exists.
 #![forbid(unsafe_code)]
 
+mod batch;
 pub mod blend;
 pub mod camera_rays;
 pub mod disc;
