@@ -5,7 +5,7 @@
 //         tiles            first and past-the-last entry of each screen tile in keys and slots
 //         keys             front to back within a tile
 //         slots            the points
-// writes  the ray state    every pixel, also of rays that are done: the images swap after this
+// writes  the ray state    every ray, also those that are done: the images swap after this
 //         live             how many rays have not ended yet
 // runs    one invocation per pixel of the tile; dispatched until no ray lives
 // twin    crates/reference/src/disc_trace.rs
@@ -36,8 +36,8 @@ layout(push_constant) uniform Push { DiscTraceParams params; };
 
 void main() {
     uvec2 pixel = tile_pixel();
-    if (any(greaterThanEqual(pixel, params.tile_size))) return;
-    Ray ray = load_ray(ivec2(pixel));
+    uint at = tile_ray(params.tile_size);
+    Ray ray = load_ray(at);
 
     vec3 o = ray.origin, d = ray.direction;
     uvec2 tile = pixel / uint(DISC_TILE);
@@ -65,7 +65,7 @@ void main() {
             uint slot = slots[next + uint(findLSB(candidates))];
             candidates &= candidates - 1u;
             Polynomial p = polynomial_of(slot);
-            float t = intersect(o, d, p);
+            float t = intersect(o, d, p, 0.0);
             bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);
             bool nearer = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);
             bool better = nearer && t > ray.after;
@@ -85,6 +85,6 @@ void main() {
 
     ray.cell = alive ? ray.cell : NONE;
     ray.cursor = next - range.x;
-    store_ray(ivec2(pixel), ray);
+    store_ray(at, ray);
     if (alive) atomicAdd(live, 1u);
 }

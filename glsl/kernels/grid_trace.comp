@@ -3,15 +3,17 @@
 // reads   the ray state, grid, polynomials
 //         cells            first and past-the-last entry of each cell in slots
 //         slots            the points of each cell
-// writes  the ray state    every pixel, also of rays that are done: the images swap after this
+// writes  the ray state    every ray, also those that are done: the images swap after this
 //         live             how many rays have not ended yet
-// runs    one invocation per pixel of the tile; dispatched until no ray lives
+// runs    one invocation per ray of the wave; dispatched until no ray lives
 // twin    crates/reference/src/grid_trace.rs
 //
 // A ray keeps the nearest hit over all points it tested, whatever cell the hit lies in, and ends
 // where that hit is no farther than the exit of its cell, or where it leaves the grid. K = 1 is the
 // paper's loop. Any K gives the same bits: a pass can end after any cell, and, so that no dispatch
 // runs away, after any 32 points of one; cell and cursor say where to go on.
+// With LEAVES, rays start on surfaces, whose own sheet they do not meet again at once, and may end at
+// any hit: those towards lights.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
@@ -24,7 +26,7 @@
 #include "records.glsl"
 #include "index.glsl"
 
-layout(local_size_x = TILE_GROUP) in;
+layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
 layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
@@ -34,9 +36,9 @@ layout(push_constant) uniform Push { TraceParams params; };
 #define BATCH 32u // points tested before any is solved: one bit each
 
 void main() {
-    uvec2 pixel = tile_pixel();
-    if (any(greaterThanEqual(pixel, params.tile_size))) return;
-    Ray ray = load_ray(ivec2(pixel));
+    uint index = list_index();
+    if (index >= params.ray_count) return;
+    Ray ray = load_ray(index);
 
     vec3 o = ray.origin, d = ray.direction;
     uint cells_left = params.cells;
@@ -51,6 +53,16 @@ void main() {
         hit_object = hit.object;
         hit_index = hit.index;
     }
+#ifdef LEAVES
+    // The sheet that the ray starts on.
+    vec3 left_normal = vec3(0.0);
+    uint left_object = NONE;
+    if (alive && ray.left != NONE) {
+        Polynomial left = polynomial_of(ray.left);
+        left_normal = normal_at(left, o);
+        left_object = left.object;
+    }
+#endif
 
     while (alive && cells_left > 0u && work_left > 0u) {
         uint count = min(range.y - next, BATCH);
@@ -64,7 +76,13 @@ void main() {
             uint slot = slots[next + uint(findLSB(candidates))];
             candidates &= candidates - 1u;
             Polynomial p = polynomial_of(slot);
-            float t = intersect(o, d, p);
+#ifdef LEAVES
+            bool own = p.object == left_object && same_sheet(p, o, left_normal);
+            float from = own ? SHEET_REACH * p.center_trust.w : 0.0;
+#else
+            float from = 0.0;
+#endif
+            float t = intersect(o, d, p, from);
             bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);
             bool nearer = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);
             bool better = nearer && t > ray.after;
@@ -78,8 +96,13 @@ void main() {
         ray.tests += count;
         work_left -= min(work_left, count + solved + 1u);
 
+#ifdef LEAVES
+        bool stops = params.any_hit != 0u && ray.hit_slot != NONE;
+        alive = !stops;
+        cell = stops ? NONE : cell;
+#endif
         // On to the next cell that holds points, once this one is exhausted.
-        bool seeking = next == range.y;
+        bool seeking = alive && next == range.y;
         while (seeking && cells_left > 0u && work_left > 0u) {
             uvec3 at = cell_of_id(grid, cell);
             vec3 exits = crossings(grid, at, o, d);
@@ -98,6 +121,6 @@ void main() {
 
     ray.cell = cell;
     ray.cursor = next - range.x;
-    store_ray(ivec2(pixel), ray);
+    store_ray(index, ray);
     if (alive) atomicAdd(live, 1u);
 }

@@ -7,7 +7,7 @@
 // writes  hits             projected, and accepted, rejected, or pending still
 //         live             how many are pending still
 //         rejected         how many are rejected
-// runs    one invocation per pixel of the tile; dispatched until none is pending
+// runs    one invocation per ray of the wave; dispatched until none is pending
 // twin    crates/reference/src/refine.rs
 //
 // At the hit x the polynomial is fitted anew, as at a point: P(x) = x + g(0, 0) n. Where P(x) is
@@ -26,7 +26,7 @@
 #include "state.glsl"
 #include "index.glsl"
 
-layout(local_size_x = TILE_GROUP) in;
+layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; uint rejected; };
@@ -180,12 +180,11 @@ Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, uvec2 sl
 }
 
 void main() {
-    uvec2 pixel = tile_pixel();
-    if (any(greaterThanEqual(pixel, params.tile_size))) return;
-    uint at = pixel.y * params.tile_size.x + pixel.x;
+    uint at = list_index();
+    if (at >= params.ray_count) return;
     Hit hit = hits[at];
     if (bitfieldExtract(hit.status, 0, HIT_STATUS_BITS) != HIT_PENDING) return;
-    Ray ray = load_ray(ivec2(pixel));
+    Ray ray = load_ray(at);
     vec4 stored = polynomials[ray.hit_slot].center_trust;
     uint object = polynomials[ray.hit_slot].object;
     uvec2 slots = uvec2(objects[object].first_slot, objects[object].slot_count);
@@ -199,7 +198,7 @@ void main() {
     Polynomial p = fit_at(rows, hit.position, h, nearest.trust, object, slots, kind);
 
     bool settled = abs(p.gradient_offset.w) <= objects[object].tolerance * h;
-    float t = settled ? hit.t : intersect(ray.origin, ray.direction, p);
+    float t = settled ? hit.t : intersect(ray.origin, ray.direction, p, 0.0);
     vec3 y, normal;
     surface_at(ray.origin, ray.direction, t < NO_HIT ? t : hit.t, p, y, normal);
     vec3 x = settled ? hit.position : hit.position + y;

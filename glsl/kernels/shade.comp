@@ -1,12 +1,12 @@
-// shade: Lambert's law at the hit of each ray, the background where there is none (method, section 4).
+// shade: Lambert's law at the diffuse hits of a wave (method, section 4).
 //
-// reads   the ray state, polynomials
-//         hits             accepted, or none
-//         objects          one an object of the scene
+// reads   the shadow rays' state      as the rays towards the last light left it
+//         polynomials, objects, paths
+//         lit_rays         the rays that hit a diffuse surface
+//         light_sums       what the lights bring, and what the last one would
 //         colors           three floats a point of each object that has colours, by slot
-//         lights
-// writes  film             every pixel
-// runs    one invocation per pixel of the tile
+// writes  film             the channels that the rays carry
+// runs    one invocation per diffuse hit
 // twin    crates/reference/src/shade.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -16,17 +16,19 @@
 #include "state.glsl"
 #include "index.glsl"
 
-layout(local_size_x = TILE_GROUP) in;
+layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
-layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
 layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = SHADE_COLORS) readonly buffer Colors { float colors[]; };
-layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
-layout(std430, binding = SHADE_FILM) writeonly buffer Film { FilmPixel film[]; };
-layout(push_constant) uniform Push { ShadeParams params; };
+layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
+layout(std430, binding = WAVE_PATHS) readonly buffer Paths { Path paths[]; };
+layout(std430, binding = WAVE_LIT_RAYS) readonly buffer LitRays { uvec2 lit_rays[]; };
+layout(std430, binding = WAVE_LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
+layout(push_constant) uniform Push { WaveParams params; };
+#include "film.glsl"
+#include "gather.glsl"
 
 #define INVERSE_PI 0.318309886
-#define INFINITE_DEPTH uintBitsToFloat(0x7f800000u)
 
 vec3 point_color(ObjectInfo object, uint slot) {
     bool has_colors = object.first_color != NONE;
@@ -35,34 +37,12 @@ vec3 point_color(ObjectInfo object, uint slot) {
     return has_colors ? color : object.albedo;
 }
 
-// What one light sends to a surface at x, by Lambert's law.
-vec3 irradiance(Light light, vec3 x, vec3 normal) {
-    vec3 towards = light.vector - x;
-    float square = dot3(towards, towards);
-    bool is_point = light.kind == LIGHT_POINT && square > 0.0;
-    vec3 l = is_point ? towards / sqrt(square) : light.vector;
-    float cosine = max(dot3(normal, l), 0.0);
-    vec3 arriving = is_point ? light.strength / square : light.strength;
-    return light.kind == LIGHT_POINT && !is_point ? vec3(0.0) : arriving * cosine;
-}
-
 void main() {
-    uvec2 pixel = tile_pixel();
-    if (any(greaterThanEqual(pixel, params.tile_size))) return;
-    Ray ray = load_ray(ivec2(pixel));
-    uint at = pixel.y * params.tile_size.x + pixel.x;
-    Hit hit = hits[at];
-    uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, hit.status >> HIT_TOTAL_SHIFT);
-    if (ray.hit_slot == NONE) {
-        vec3 behind = params.transparent != 0u ? vec3(0.0) : params.background;
-        film[at] = FilmPixel(vec4(ray.color + behind, 0.0), vec4(0.0, 0.0, 0.0, INFINITE_DEPTH),
-                             vec4(0.0, 0.0, 0.0, -1.0), counts);
-        return;
-    }
-    uint index = polynomials[ray.hit_slot].object;
-    vec3 light = vec3(0.0);
-    for (uint i = 0u; i < params.light_count; ++i) light += irradiance(lights[i], hit.position, hit.normal);
-    vec3 radiance = ray.color + point_color(objects[index], ray.hit_slot) * (light * INVERSE_PI);
-    float depth = hit.t * dot3(ray.direction, params.forward);
-    film[at] = FilmPixel(vec4(radiance, 1.0), vec4(hit.position, depth), vec4(hit.normal, float(index)), counts);
+    uint at = list_index();
+    if (at >= params.ray_count) return;
+    uint ray = lit_rays[at].x, slot = lit_rays[at].y;
+    uint pixel = paths[ray].pixel;
+    vec3 light = params.light_count > 0u ? gathered(at, pixel) : vec3(0.0);
+    vec3 albedo = point_color(objects[polynomials[slot].object], slot);
+    write_channels(pixel, paths[ray].channels, paths[ray].throughput * (albedo * (light * INVERSE_PI)));
 }

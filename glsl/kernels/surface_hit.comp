@@ -5,7 +5,7 @@
 // writes  hits             accepted, or pending where the object's hits are refined; a hit that stands
 //                          already is left alone; must be zero before the first time
 //         live             how many are pending
-// runs    one invocation per pixel of the tile
+// runs    one invocation per ray of the wave
 // twin    crates/reference/src/surface_hit.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -17,7 +17,7 @@
 #include "state.glsl"
 #include "index.glsl"
 
-layout(local_size_x = TILE_GROUP) in;
+layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
 layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
@@ -42,12 +42,11 @@ vec3 blended_normal(vec3 x, vec3 normal, uint object) {
 }
 
 void main() {
-    uvec2 pixel = tile_pixel();
-    if (any(greaterThanEqual(pixel, params.tile_size))) return;
-    uint at = pixel.y * params.tile_size.x + pixel.x;
+    uint at = list_index();
+    if (at >= params.ray_count) return;
     uint status = hits[at].status;
     if (bitfieldExtract(status, 0, HIT_STATUS_BITS) == HIT_ACCEPTED) return;
-    Ray ray = load_ray(ivec2(pixel));
+    Ray ray = load_ray(at);
     uint iterations = status >> HIT_TOTAL_SHIFT << HIT_TOTAL_SHIFT;
     if (ray.hit_slot == NONE) {
         hits[at].status = iterations | HIT_NONE;
@@ -58,7 +57,8 @@ void main() {
     surface_at(ray.origin, ray.direction, ray.hit_t, p, y, normal);
     bool refined = objects[p.object].max_iterations > 0u;
     vec3 x = p.center_trust.xyz + y;
-    if (objects[p.object].blends != 0u && !refined) normal = blended_normal(x, normal, p.object);
+    vec3 blended = objects[p.object].blends != 0u && !refined ? blended_normal(x, normal, p.object) : normal;
+    normal = dot3(blended, ray.direction) < 0.0 ? blended : normal; // at an outline it may look away
     hits[at] = Hit(x, ray.hit_t, normal, iterations | (refined ? HIT_PENDING : HIT_ACCEPTED));
     if (refined) atomicAdd(live, 1u);
 }

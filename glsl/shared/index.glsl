@@ -16,4 +16,11 @@ uvec2 tile_pixel() {
     uvec2 within = uvec2((i & 3u) | ((i >> 1) & 4u), ((i >> 2) & 1u) | ((i >> 3) & 6u));
     return gl_WorkGroupID.xy * 8u + within;
 }
+
+// The ray of that pixel in the wave of rays from the camera: workgroup after workgroup, so that
+// neighbours stay together, with rays that are none where the tile ends within a workgroup.
+uint tile_ray(uvec2 tile_size) {
+    uint across = (tile_size.x + 7u) / 8u;
+    return (gl_WorkGroupID.y * across + gl_WorkGroupID.x) * uint(TILE_GROUP) + gl_LocalInvocationID.x;
+}
 #endif

@@ -76,6 +76,24 @@
 #define REFINE_OFFSETS 18
 #define REFINE_POINTS 19
 #define REFINE_OUTCOMES 20
+#define WAVE_PATHS 21
+#define WAVE_NEXT_PATHS 22
+#define WAVE_LIT 23
+#define WAVE_NEXT 24
+#define WAVE_TALLY 25
+#define WAVE_LIT_RAYS 26
+#define WAVE_LIGHT_SUMS 27
+
+#define STATE_ROW 1024 // texels a row of the ray state's images
+#define MEDIA_WORDS 8 // of a path: two media each
+
+// How a surface scatters.
+#define MATERIAL_DIFFUSE 0
+#define MATERIAL_MIRROR 1
+#define MATERIAL_GLASS 2
+
+#define MOST_CROSSINGS 1024 // surfaces a path may pass through that do not change its medium
+#define CHANNELS_ALL 7 // a path's channels: 1 red, 2 green, 4 blue
 
 // What has become of a pixel's hit: the low byte of Hit.status.
 #define HIT_NONE 0
@@ -173,9 +191,10 @@ struct CameraParams {    // 80 bytes
 };
 
 struct TraceParams {     // 16 bytes
-    uvec2 tile_size;     //  0
-    uint cells;          //  8  K: how many cells a ray may cross in this pass
-    uint work;           // 12  loop iterations a ray may spend in this pass
+    uint ray_count;      //  0  of the wave
+    uint cells;          //  4  K: how many cells a ray may cross in this pass
+    uint work;           //  8  loop iterations a ray may spend in this pass
+    uint any_hit;        // 12  1: any hit ends a ray
 };
 
 // Distances between nearest and farthest, ranked by their bits.
@@ -199,16 +218,26 @@ struct DiscTraceParams { // 28 bytes
     uint work;           // 24  loop iterations a ray may spend in this pass
 };
 
-struct ShadeParams {     // 40 bytes
+// Of the kernels that scatter and shade the rays of a wave.
+struct WaveParams {      // 80 bytes
     vec3 forward;        //  0  viewing axis
-    uint light_count;    // 12
+    uint ray_count;      // 12  of the wave; of shadow_rays and shade: hits on diffuse surfaces
     vec3 background;     // 16
-    uint transparent;    // 28  1: the background is left out
-    uvec2 tile_size;     // 32
+    uint transparent;    // 28  1: camera rays leave the background out
+    uvec2 tile_origin;   // 32  in the full image, pixels
+    uvec2 tile_size;     // 40
+    uint wave;           // 48  0: rays from the camera
+    uint max_bounces;    // 52
+    uint fresnel;        // 56  1: glass reflects or refracts at random, 0: it refracts
+    uint seed;           // 60
+    uint light;          // 64  the one that shadow rays go to now
+    uint light_count;    // 68
+    uint sample_index;   // 72
+    uint sample_count;   // 76
 };
 
-struct ObjectInfo {      // 48 bytes
-    vec3 albedo;         //  0
+struct ObjectInfo {      // 80 bytes
+    vec3 albedo;         //  0  of a mirror: the share reflected
     uint first_color;    // 12  in colors, or NONE: albedo counts
     uint first_slot;     // 16
     uint polynomial;     // 20  FIT_FULL or FIT_INCOMPLETE: what refinement fits first
@@ -217,7 +246,11 @@ struct ObjectInfo {      // 48 bytes
     uint slot_count;     // 32
     float weight_scale;  // 36  h over the width of the weights
     uint blends;         // 40  1: normals are blended over the polynomials around a hit
-    uint pad;            // 44
+    uint material;       // 44  MATERIAL_*
+    vec3 ior;            // 48  of glass, by channel
+    int priority;        // 60  of glass, among overlapping media
+    vec3 absorption;     // 64  of glass, per unit of length
+    uint pad;            // 76
 };
 
 struct Light {           // 32 bytes
@@ -232,6 +265,25 @@ struct Hit {             // 32 bytes
     float t;             // 12
     vec3 normal;         // 16  unit, facing the ray's origin
     uint status;         // 28  HIT_*, and counts of iterations
+};
+
+// What a ray has behind it.
+struct Path {            // 64 bytes
+    vec3 throughput;     //  0  what of the light it finds arrives at the pixel
+    uint pixel;          // 12  of the tile, row by row; NONE: no ray at all
+    uint channels;       // 16  bits of CHANNELS_ALL
+    uint bounces;        // 20  interactions with surfaces so far
+    uint crossings;      // 24  surfaces passed through so far
+    uint media_count;    // 28  objects that it is inside
+    uint media[MEDIA_WORDS]; // 32  those, 16 bits each, in no order
+};
+
+// At a diffuse hit.
+struct LightSum {        // 32 bytes
+    vec3 sum;            //  0  irradiance by the lights before the last, each by its cosine
+    uint pad;            // 12
+    vec3 arriving;       // 16  what the last would add, were nothing in the way
+    uint pad_end;        // 28
 };
 
 struct FilmPixel {       // 64 bytes

@@ -23,14 +23,34 @@ bool near_trust_ball(vec3 o, vec3 d, vec4 center_trust, float nearest) {
     return dot3(y0, y0) <= b * b && s + b > 0.0 && s - b <= nearest;
 }
 
-bool in_trust_ball(float root, vec3 y0, vec3 d, float s, float b) {
-    vec3 y = y0 + root * d;
-    return abs(root) <= b && dot3(y, y) <= b * b && s + root > 0.0;
+// The unit normal of the polynomial's own level through x.
+vec3 normal_at(Polynomial p, vec3 x) {
+    return normalize3(p.gradient_offset.xyz - 2.0 * apply_curvature(p, x - p.center_trust.xyz));
 }
 
-// Nearest t > 0 where o + t d meets the polynomial inside its trust ball, or NO_HIT. d has unit
+#define SHEET_REACH 0.5   // of the trust radius: how far a ray may still meet the sheet it starts on
+#define SHEET_HEIGHT 0.05 // of the trust radius: how far apart polynomials of one sheet may be
+#define SHEET_COSINE 0.5  // of the angle between their normals, 60 degrees
+
+// Whether p is the sheet that a ray starts on at o, where its normal is `normal` (method, section 4).
+bool same_sheet(Polynomial p, vec3 o, vec3 normal) {
+    vec3 y = o - p.center_trust.xyz;
+    vec3 curved = apply_curvature(p, y);
+    vec3 gradient = p.gradient_offset.xyz - 2.0 * curved;
+    float steepness = sqrt(dot3(gradient, gradient));
+    float height = (dot3(p.gradient_offset.xyz, y) - p.gradient_offset.w) - dot3(y, curved);
+    return abs(height) < (SHEET_HEIGHT * p.center_trust.w) * steepness
+        && abs(dot3(gradient, normal)) > SHEET_COSINE * steepness;
+}
+
+bool in_trust_ball(float root, vec3 y0, vec3 d, float s, float b, float from) {
+    vec3 y = y0 + root * d;
+    return abs(root) <= b && dot3(y, y) <= b * b && s + root > from;
+}
+
+// Nearest t > from where o + t d meets the polynomial inside its trust ball, or NO_HIT. d has unit
 // length. Roots by q = -(a1 + sign(a1) sqrt(a1 a1 - 4 a2 a0)) / 2, so that none cancels.
-float intersect(vec3 o, vec3 d, Polynomial p) {
+float intersect(vec3 o, vec3 d, Polynomial p, float from) {
     float b = p.center_trust.w;
     vec3 from_center = o - p.center_trust.xyz;
     float s = -dot3(from_center, d);
@@ -48,8 +68,8 @@ float intersect(vec3 o, vec3 d, Polynomial p) {
     float first = r1 < r2 ? r1 : r2;
     float second = r1 < r2 ? r2 : r1;
     bool real = discriminant >= 0.0;
-    bool first_counts = real && in_trust_ball(first, y0, d, s, b);
-    bool second_counts = real && in_trust_ball(second, y0, d, s, b);
+    bool first_counts = real && in_trust_ball(first, y0, d, s, b, from);
+    bool second_counts = real && in_trust_ball(second, y0, d, s, b, from);
     return first_counts ? s + first : (second_counts ? s + second : NO_HIT);
 }
 

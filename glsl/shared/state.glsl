@@ -1,11 +1,13 @@
 // state: what a ray carries from pass to pass, in four images read and four written.
 //
-// Stands in for the four render targets of the paper (section 5): position, direction, cell,
-// accumulated colour. The nearest hit so far is packed among them. All bits travel as unsigned
-// integers, so that no driver flushes or quiets a value on its way.
+// Stands in for the four render targets of the paper (section 5): position, direction, cell; what a
+// ray has accumulated is in its Path. The nearest hit so far is packed among them. The rays of a wave
+// lie one after another, STATE_ROW a row. All bits travel as unsigned integers, so that no driver
+// flushes or quiets a value on its way.
 #ifndef STATE_GLSL
 #define STATE_GLSL
 #include "layout.glsl"
+#include "math.glsl"
 
 struct Ray {
     vec3 origin;     // centred scene space
@@ -16,24 +18,37 @@ struct Ray {
     uint cursor;     // how many of that cell's points it has tested
     uint tests;      // points tested so far
     uint hit_slot;   // the point hit, or NONE
-    vec3 color;      // accumulated
+    uint left;       // the point whose surface it starts on, or NONE
     float after;     // hits up to this distance do not count: they were refined away
 };
+
+Ray new_ray(vec3 origin, vec3 direction, uint cell, uint left) {
+    return Ray(origin, NO_HIT, direction, 0u, cell, 0u, 0u, NONE, left, 0.0);
+}
+
+Ray no_ray() {
+    return new_ray(vec3(0.0), vec3(0.0, 0.0, 1.0), NONE, NONE);
+}
+
+ivec2 texel_of(uint ray) {
+    return ivec2(ray % uint(STATE_ROW), ray / uint(STATE_ROW));
+}
 
 #ifdef STATE_READS
 layout(rgba32ui, binding = STATE_IN + 0) uniform readonly uimage2D position_in;
 layout(rgba32ui, binding = STATE_IN + 1) uniform readonly uimage2D direction_in;
 layout(rgba32ui, binding = STATE_IN + 2) uniform readonly uimage2D cell_in;
-layout(rgba32ui, binding = STATE_IN + 3) uniform readonly uimage2D color_in;
+layout(rgba32ui, binding = STATE_IN + 3) uniform readonly uimage2D start_in;
 
-Ray load_ray(ivec2 pixel) {
-    uvec4 position = imageLoad(position_in, pixel);
-    uvec4 direction = imageLoad(direction_in, pixel);
-    uvec4 cell = imageLoad(cell_in, pixel);
-    uvec4 color = imageLoad(color_in, pixel);
+Ray load_ray(uint ray) {
+    ivec2 texel = texel_of(ray);
+    uvec4 position = imageLoad(position_in, texel);
+    uvec4 direction = imageLoad(direction_in, texel);
+    uvec4 cell = imageLoad(cell_in, texel);
+    uvec4 start = imageLoad(start_in, texel);
     return Ray(uintBitsToFloat(position.xyz), uintBitsToFloat(position.w),
                uintBitsToFloat(direction.xyz), direction.w,
-               cell.x, cell.y, cell.z, cell.w, uintBitsToFloat(color.xyz), uintBitsToFloat(color.w));
+               cell.x, cell.y, cell.z, cell.w, start.x, uintBitsToFloat(start.y));
 }
 #endif
 
@@ -41,13 +56,14 @@ Ray load_ray(ivec2 pixel) {
 layout(rgba32ui, binding = STATE_OUT + 0) uniform writeonly uimage2D position_out;
 layout(rgba32ui, binding = STATE_OUT + 1) uniform writeonly uimage2D direction_out;
 layout(rgba32ui, binding = STATE_OUT + 2) uniform writeonly uimage2D cell_out;
-layout(rgba32ui, binding = STATE_OUT + 3) uniform writeonly uimage2D color_out;
+layout(rgba32ui, binding = STATE_OUT + 3) uniform writeonly uimage2D start_out;
 
-void store_ray(ivec2 pixel, Ray ray) {
-    imageStore(position_out, pixel, uvec4(floatBitsToUint(ray.origin), floatBitsToUint(ray.hit_t)));
-    imageStore(direction_out, pixel, uvec4(floatBitsToUint(ray.direction), ray.cells));
-    imageStore(cell_out, pixel, uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot));
-    imageStore(color_out, pixel, uvec4(floatBitsToUint(ray.color), floatBitsToUint(ray.after)));
+void store_ray(uint at, Ray ray) {
+    ivec2 texel = texel_of(at);
+    imageStore(position_out, texel, uvec4(floatBitsToUint(ray.origin), floatBitsToUint(ray.hit_t)));
+    imageStore(direction_out, texel, uvec4(floatBitsToUint(ray.direction), ray.cells));
+    imageStore(cell_out, texel, uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot));
+    imageStore(start_out, texel, uvec4(ray.left, floatBitsToUint(ray.after), 0u, 0u));
 }
 #endif
 #endif

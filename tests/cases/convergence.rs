@@ -120,7 +120,7 @@ fn hit_of(
     ray: &mut Ray<f64>,
 ) -> Option<Hit<f64>> {
     loop {
-        grid_trace(ray, around.grid, &reference.lists, &reference.polynomials);
+        grid_trace(ray, around.grid, &reference.lists, &reference.polynomials, false);
         let hit = surface_hit(ray, &reference.polynomials)?;
         if around.objects[0].max_iterations == 0 {
             return Some(hit);

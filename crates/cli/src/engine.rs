@@ -7,7 +7,7 @@ use crate::progress::Progress;
 use film::Film;
 use gpu::{Device, DeviceChoice, Instance, InstanceOptions};
 use kernels::layout::{FitOutcome, GridInfo};
-use plan::{Picture, Plan};
+use plan::{Picture, Plan, Rays};
 use reference::Reference;
 use render::Renderer;
 use std::sync::Arc;
@@ -48,8 +48,8 @@ pub struct Frame {
     pub hits: u64,
     /// Points that rays were tested against.
     pub tests: u64,
-    /// Rays from the camera.
-    pub camera_rays: u64,
+    /// Rays, by kind.
+    pub rays: Rays,
     /// Dispatches of the traversal.
     pub passes: u32,
     /// From submission to completion of all passes.
@@ -147,8 +147,8 @@ impl Built {
                 Ok(Frame {
                     hits: picture.hits,
                     tests: picture.tests,
+                    rays: picture.rays,
                     film: picture.finish(),
-                    camera_rays: stats.camera_rays,
                     passes: stats.passes,
                     trace: stats.trace,
                     wall: started.elapsed(),
@@ -201,12 +201,12 @@ impl Built {
 impl Frame {
     fn of_reference(picture: Picture, started: Instant) -> Self {
         let elapsed = started.elapsed();
-        let (hits, tests) = (picture.hits, picture.tests);
+        let (hits, tests, rays) = (picture.hits, picture.tests, picture.rays);
         let film = picture.finish();
         Self {
             hits,
             tests,
-            camera_rays: film.window.pixels() as u64,
+            rays,
             film,
             passes: 1,
             trace: elapsed,

@@ -13,14 +13,14 @@ const COMPILER: &str =
 /// What the compiler says, with file and line.
 pub fn compile(kernel: &str) -> Result<Vec<u8>, String> {
     let sources = source::with_includes(kernel)?;
-    let (stem, definition) = spirv::source_of(kernel);
+    let (stem, definitions) = spirv::source_of(kernel);
     let file = format!("{stem}.comp");
     let compiler = shaderc::Compiler::new().map_err(|e| e.to_string())?;
     let mut options = shaderc::CompileOptions::new().map_err(|e| e.to_string())?;
     options.set_target_env(shaderc::TargetEnv::Vulkan, shaderc::EnvVersion::Vulkan1_1 as u32);
     options.set_optimization_level(shaderc::OptimizationLevel::Zero);
     options.set_warnings_as_errors();
-    if let Some(name) = definition {
+    for name in definitions {
         options.add_macro_definition(name, None);
     }
     options.set_include_callback(|name, _, _, _| {

@@ -152,6 +152,34 @@ constants! {
     REFINE_POINTS = 19;
     /// Binding of `refine`: [`FitOutcome`]s.
     REFINE_OUTCOMES = 20;
+    /// Binding of the kernels of a wave: [`Path`] by ray.
+    WAVE_PATHS = 21;
+    /// Binding of `scatter`: the [`Path`]s of the next wave.
+    WAVE_NEXT_PATHS = 22;
+    /// Binding of the kernels of a wave: whether each ray hit a diffuse surface, then offsets.
+    WAVE_LIT = 23;
+    /// Binding of the kernels of a wave: rays of the next wave that each makes, then offsets.
+    WAVE_NEXT = 24;
+    /// Binding of the kernels of a wave: counts of rays, four u32.
+    WAVE_TALLY = 25;
+    /// Binding of the kernels of a wave: the rays that hit a diffuse surface.
+    WAVE_LIT_RAYS = 26;
+    /// Binding of the kernels of a wave: what the lights send to those hits, and what the light of now would.
+    WAVE_LIGHT_SUMS = 27;
+    /// Texels a row of the ray state's images.
+    STATE_ROW = 1024;
+    /// Words of a path's set of media: two media each.
+    MEDIA_WORDS = 8;
+    /// [`ObjectInfo::material`] of Lambert's law.
+    MATERIAL_DIFFUSE = 0;
+    /// [`ObjectInfo::material`] of a perfect mirror.
+    MATERIAL_MIRROR = 1;
+    /// [`ObjectInfo::material`] of smooth glass.
+    MATERIAL_GLASS = 2;
+    /// Surfaces that a path may pass through that do not change its medium.
+    MOST_CROSSINGS = 1024;
+    /// [`Path::channels`] of a ray that carries all three.
+    CHANNELS_ALL = 7;
     /// A pixel that hit nothing.
     HIT_NONE = 0;
     /// A hit that stands.
@@ -360,14 +388,16 @@ gpu_layout!(CameraParams, 80, {
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct TraceParams {
-    /// Columns and rows of the tile.
-    pub tile_size: [u32; 2],
+    /// Rays of the wave.
+    pub ray_count: u32,
     /// K: cells a ray may cross in this pass.
     pub cells: u32,
     /// Loop iterations a ray may spend in this pass.
     pub work: u32,
+    /// 1: any hit ends a ray.
+    pub any_hit: u32,
 }
-gpu_layout!(TraceParams, 16, { tile_size: 0, cells: 8, work: 12 });
+gpu_layout!(TraceParams, 16, { ray_count: 0, cells: 4, work: 8, any_hit: 12 });
 
 /// Distances between nearest and farthest, ranked by their bits.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -412,30 +442,50 @@ pub struct DiscTraceParams {
 }
 gpu_layout!(DiscTraceParams, 28, { ranks: 0, tile_size: 16, work: 24 });
 
-/// Push constants of `shade`.
+/// Push constants of the kernels that scatter and shade the rays of a wave.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct ShadeParams {
+pub struct WaveParams {
     /// Unit vector of the viewing axis.
     pub forward: [f32; 3],
-    /// Lights of the scene.
-    pub light_count: u32,
+    /// Rays of the wave; for `shadow_rays` and `shade`, hits on diffuse surfaces.
+    pub ray_count: u32,
     /// Linear RGB.
     pub background: [f32; 3],
-    /// 1 where the background is left out.
+    /// 1 where camera rays leave the background out.
     pub transparent: u32,
+    /// The tile's first pixel in the full image.
+    pub tile_origin: [u32; 2],
     /// Columns and rows of the tile.
     pub tile_size: [u32; 2],
+    /// 0: rays from the camera.
+    pub wave: u32,
+    /// Interactions after the primary hit.
+    pub max_bounces: u32,
+    /// 1: glass reflects or refracts at random; 0: it refracts.
+    pub fresnel: u32,
+    /// Of everything random.
+    pub seed: u32,
+    /// The light that shadow rays go to now.
+    pub light: u32,
+    /// Lights of the scene.
+    pub light_count: u32,
+    /// Which sample of each pixel.
+    pub sample_index: u32,
+    /// Samples a pixel.
+    pub sample_count: u32,
 }
-gpu_layout!(ShadeParams, 40, {
-    forward: 0, light_count: 12, background: 16, transparent: 28, tile_size: 32,
+gpu_layout!(WaveParams, 80, {
+    forward: 0, ray_count: 12, background: 16, transparent: 28, tile_origin: 32, tile_size: 40,
+    wave: 48, max_bounces: 52, fresnel: 56, seed: 60, light: 64, light_count: 68, sample_index: 72,
+    sample_count: 76,
 });
 
 /// What shading needs of an object.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ObjectInfo {
-    /// Linear RGB, where the points' colours do not count.
+    /// Linear RGB, where the points' colours do not count; of a mirror, the share reflected.
     pub albedo: [f32; 3],
     /// First float of the object's colours, or `NONE`.
     pub first_color: u32,
@@ -453,13 +503,21 @@ pub struct ObjectInfo {
     pub weight_scale: f32,
     /// 1: normals are blended over the polynomials around a hit.
     pub blends: u32,
+    /// One of `MATERIAL_*`.
+    pub material: u32,
+    /// Refractive index of glass, by channel.
+    pub ior: [f32; 3],
+    /// Of glass: the highest counts where media overlap.
+    pub priority: i32,
+    /// Of glass: σ, per unit of length.
+    pub absorption: [f32; 3],
     /// Unused.
     pub pad: u32,
 }
-gpu_layout!(ObjectInfo, 48, {
+gpu_layout!(ObjectInfo, 80, {
     albedo: 0, first_color: 12, first_slot: 16, polynomial: 20, max_iterations: 24, tolerance: 28,
-    slot_count: 32, weight_scale: 36, blends: 40,
-    pad: 44,
+    slot_count: 32, weight_scale: 36, blends: 40, material: 44, ior: 48, priority: 60,
+    absorption: 64, pad: 76,
 });
 
 /// One light.
@@ -492,6 +550,44 @@ pub struct Hit {
 }
 gpu_layout!(Hit, 32, { position: 0, t: 12, normal: 16, status: 28 });
 
+/// What a ray has behind it.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Path {
+    /// What of the light it finds arrives at the pixel.
+    pub throughput: [f32; 3],
+    /// Pixel of the tile, row by row; `NONE`: no ray at all.
+    pub pixel: u32,
+    /// Bits of `CHANNELS_ALL`: 1 red, 2 green, 4 blue.
+    pub channels: u32,
+    /// Interactions with surfaces so far.
+    pub bounces: u32,
+    /// Surfaces passed through so far that did not change its medium.
+    pub crossings: u32,
+    /// Objects that it is inside.
+    pub media_count: u32,
+    /// Those, 16 bits each, in no order.
+    pub media: [u32; MEDIA_WORDS as usize],
+}
+gpu_layout!(Path, 64, {
+    throughput: 0, pixel: 12, channels: 16, bounces: 20, crossings: 24, media_count: 28, media: 32,
+});
+
+/// Light at a diffuse hit.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct LightSum {
+    /// Irradiance by the lights before the last, each by its cosine.
+    pub sum: [f32; 3],
+    /// Unused.
+    pub pad: u32,
+    /// What the last would add, were nothing in the way.
+    pub arriving: [f32; 3],
+    /// Unused.
+    pub pad_end: u32,
+}
+gpu_layout!(LightSum, 32, { sum: 0, pad: 12, arriving: 16, pad_end: 28 });
+
 /// What one pixel saw.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -523,9 +619,11 @@ pub const STRUCTS: &[StructLayout] = &[
     DepthRanks::LAYOUT,
     DiscParams::LAYOUT,
     DiscTraceParams::LAYOUT,
-    ShadeParams::LAYOUT,
+    WaveParams::LAYOUT,
     ObjectInfo::LAYOUT,
     Light::LAYOUT,
     Hit::LAYOUT,
+    Path::LAYOUT,
+    LightSum::LAYOUT,
     FilmPixel::LAYOUT,
 ];

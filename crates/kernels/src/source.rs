@@ -42,7 +42,7 @@ fn included_file(line: &str) -> Option<&str> {
     line.trim_start().strip_prefix("#include \"")?.split('"').next()
 }
 
-/// SHA-256 over a module's macro and the names and texts of its kernel and includes, in hexadecimal.
+/// SHA-256 over a module's macros and the names and texts of its kernel and includes, in hexadecimal.
 ///
 /// # Errors
 /// As [`with_includes`].
@@ -50,7 +50,7 @@ fn included_file(line: &str) -> Option<&str> {
 pub fn hash(module: &str) -> Result<String, String> {
     use sha2::Digest;
     let mut hasher = sha2::Sha256::new();
-    hasher.update(crate::spirv::source_of(module).1.unwrap_or_default().as_bytes());
+    hasher.update(crate::spirv::source_of(module).1.join(",").as_bytes());
     for (name, text) in with_includes(module)? {
         hasher.update(name.as_bytes());
         hasher.update([0]);

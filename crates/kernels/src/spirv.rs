@@ -28,6 +28,8 @@ modules! {
     camera_rays,
     /// Where each cell's entries begin.
     cell_offsets,
+    /// What becomes of each ray of a wave.
+    classify,
     /// Screen tiles that each disc covers.
     disc_count,
     /// Pairs of screen tile and point.
@@ -50,6 +52,12 @@ modules! {
     grid_trace,
     /// The same, reading polynomials through a uniform texel buffer.
     grid_trace_texels,
+    /// The same for rays that start on surfaces.
+    grid_trace_leaving,
+    /// Both.
+    grid_trace_leaving_texels,
+    /// The rays that hit a diffuse surface, one after another.
+    list_lit,
     /// The points of each cell with their positions.
     list_points,
     /// One iteration of each pending hit towards the point set surface.
@@ -62,8 +70,12 @@ modules! {
     scan_apply,
     /// Prefix sums, first half.
     scan_reduce,
-    /// Lambert's law at the hits.
+    /// Reflected and refracted rays.
+    scatter,
+    /// Lambert's law at the diffuse hits.
     shade,
+    /// Rays towards a light.
+    shadow_rays,
     /// Stable sort by one digit, first half.
     sort_count,
     /// Stable sort by one digit, second half.
@@ -72,20 +84,22 @@ modules! {
     surface_hit,
 }
 
-/// Modules made of another kernel's source with a macro defined: name, kernel, macro.
-pub const VARIANTS: &[(&str, &str, &str)] = &[
-    ("disc_trace_texels", "disc_trace", "RECORDS_AS_TEXELS"),
-    ("grid_trace_texels", "grid_trace", "RECORDS_AS_TEXELS"),
-    ("refine_texels", "refine", "RECORDS_AS_TEXELS"),
+/// Modules made of another kernel's source with macros defined: name, kernel, macros.
+pub const VARIANTS: &[(&str, &str, &[&str])] = &[
+    ("disc_trace_texels", "disc_trace", &["RECORDS_AS_TEXELS"]),
+    ("grid_trace_leaving", "grid_trace", &["LEAVES"]),
+    ("grid_trace_leaving_texels", "grid_trace", &["LEAVES", "RECORDS_AS_TEXELS"]),
+    ("grid_trace_texels", "grid_trace", &["RECORDS_AS_TEXELS"]),
+    ("refine_texels", "refine", &["RECORDS_AS_TEXELS"]),
 ];
 
-/// The kernel whose source a module is made of, and the macro it is compiled with, if any.
+/// The kernel whose source a module is made of, and the macros it is compiled with.
 #[must_use]
-pub fn source_of(name: &str) -> (&str, Option<&'static str>) {
+pub fn source_of(name: &str) -> (&str, &'static [&'static str]) {
     VARIANTS
         .iter()
         .find(|variant| variant.0 == name)
-        .map_or((name, None), |variant| (variant.1, Some(variant.2)))
+        .map_or((name, &[]), |variant| (variant.1, variant.2))
 }
 
 /// Words of a module, whatever the alignment of its bytes.

@@ -14,21 +14,28 @@ mod picture;
 pub use camera::View;
 pub use diagnostic::Diagnostic;
 pub use discs::{MAX_DISC_PAIRS, screen_tiles};
-pub use picture::Picture;
+pub use picture::{Picture, Rays};
 
 use kernels::layout::{
-    self, CameraParams, FIT_FULL, FIT_INCOMPLETE, FitParams, LIGHT_DIRECTIONAL, LIGHT_POINT, NONE,
-    ObjectInfo, ShadeParams,
+    self, CameraParams, FIT_FULL, FIT_INCOMPLETE, FitParams, LIGHT_DIRECTIONAL, LIGHT_POINT,
+    MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR, NONE, ObjectInfo, WaveParams,
 };
 use points::{Cloud, CloudError, ObjectPoints, PointSet};
 pub use scene::Primary;
-use scene::{Albedo, FeatureSize, Light, Normals, Object, Polynomial, Refine, Scene, Up};
+use scene::{
+    Albedo, FeatureSize, Fresnel, Light, Material, MaterialKind, Normals, Object, Polynomial,
+    Refine, Scene, Up,
+};
 use std::sync::Arc;
 
 /// Albedo of objects whose points have no colours and whose material names none.
 const DEFAULT_ALBEDO: [f32; 3] = [0.8; 3];
-/// Tiles have at most this many pixels a side: their ray state is 128 MiB.
-pub const TILE_SIDE: u32 = 1024;
+/// Columns of a tile at most: a row of the ray state's images.
+const TILE_WIDTH: u32 = layout::STATE_ROW;
+/// Rays of a wave at most: their state is 128 MiB.
+const WAVE_RAYS: u32 = 1 << 20;
+/// Sides of the blocks of pixels whose rays lie together.
+const BLOCK: u32 = 8;
 
 /// A rectangle of pixels of the full image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,8 +69,8 @@ pub struct Plan {
     pub primary: Primary,
     /// Parameters of `camera_rays`, but for the tile.
     pub camera: CameraParams,
-    /// Parameters of `shade`, but for the tile.
-    pub shade: ShadeParams,
+    /// Parameters of the kernels that scatter and shade, but for the tile and the wave.
+    pub wave: WaveParams,
     /// What shading needs of each object.
     pub objects: Vec<ObjectInfo>,
     /// Three floats a point of each object that has colours, by slot.
@@ -169,12 +176,21 @@ impl Plan {
             cells_per_pass: scene.render.cells_per_pass,
             primary: scene.render.primary,
             camera: view.params,
-            shade: ShadeParams {
+            wave: WaveParams {
                 forward: view.params.forward,
-                light_count: scene.lights.len() as u32,
+                ray_count: 0,
                 background: scene.background.color.map(|c| c as f32),
                 transparent: u32::from(scene.image.transparent),
+                tile_origin: [0, 0],
                 tile_size: [0, 0],
+                wave: 0,
+                max_bounces: scene.render.max_bounces,
+                fresnel: u32::from(scene.render.fresnel == Fresnel::Sample),
+                seed: scene.render.seed,
+                light: 0,
+                light_count: scene.lights.len() as u32,
+                sample_index: 0,
+                sample_count: scene.image.samples,
             },
             objects,
             colors,
@@ -201,14 +217,30 @@ impl Plan {
         self.objects.iter().any(|object| object.max_iterations > 0)
     }
 
+    /// Whether any surface sends rays on.
+    #[must_use]
+    pub fn scatters(&self) -> bool {
+        self.objects.iter().any(|object| object.material != MATERIAL_DIFFUSE)
+    }
+
+    /// Rays of a wave that a pixel may have at most: where glass disperses, one a channel.
+    #[must_use]
+    pub fn rays_per_pixel(&self) -> u32 {
+        let disperses = |object: &ObjectInfo| object.ior.iter().any(|&ior| ior != object.ior[0]);
+        if self.objects.iter().any(disperses) { 3 } else { 1 }
+    }
+
     /// The tiles of the picture, row by row.
     #[must_use]
     pub fn tiles(&self) -> Vec<Window> {
+        let width = TILE_WIDTH.min(self.window.size[0].next_multiple_of(BLOCK));
+        let rows = WAVE_RAYS / self.rays_per_pixel() / width;
+        let sides = [width, rows / BLOCK * BLOCK];
         let starts = |axis: usize| {
             let (first, count) = (self.window.origin[axis], self.window.size[axis]);
             (first..first + count)
-                .step_by(TILE_SIDE as usize)
-                .map(move |at| (at, TILE_SIDE.min(first + count - at)))
+                .step_by(sides[axis] as usize)
+                .map(move |at| (at, sides[axis].min(first + count - at)))
         };
         starts(1)
             .flat_map(|(y, height)| {
@@ -223,10 +255,11 @@ impl Plan {
         CameraParams { tile_origin: tile.origin, tile_size: tile.size, ..self.camera }
     }
 
-    /// Parameters of `shade` for one tile.
+    /// Parameters of the kernels that scatter and shade, for the first wave of one tile.
     #[must_use]
-    pub fn shade_of(&self, tile: &Window) -> ShadeParams {
-        ShadeParams { tile_size: tile.size, ..self.shade }
+    pub fn wave_of(&self, tile: &Window) -> WaveParams {
+        let ray_count = camera_wave(tile);
+        WaveParams { tile_origin: tile.origin, tile_size: tile.size, ray_count, ..self.wave }
     }
 
     /// An empty picture, to be filled tile by tile.
@@ -240,6 +273,12 @@ impl Plan {
     pub fn provenance(&self) -> &film::Provenance {
         &self.provenance
     }
+}
+
+/// Rays of the wave from the camera, with those that are none because the tile ends within a block.
+#[must_use]
+pub fn camera_wave(tile: &Window) -> u32 {
+    tile.size[0].next_multiple_of(BLOCK) * tile.size[1].next_multiple_of(BLOCK)
 }
 
 /// What of an image of these columns and rows is rendered: `crop`, or all of it.
@@ -319,11 +358,9 @@ fn object_infos(
                 return Err(PlanError::NoColors { name: object.name.clone(), file });
             }
         };
+        let optics = Optics::of(&object.material);
         infos.push(ObjectInfo {
-            albedo: match object.material.albedo {
-                Albedo::Color(color) => color.map(|c| c as f32),
-                Albedo::Default | Albedo::Points => DEFAULT_ALBEDO,
-            },
+            albedo: optics.albedo,
             first_color: if own.is_some() { colors.len() as u32 } else { NONE },
             first_slot: cloud.objects[index].first_slot,
             polynomial: kind_of(object.surface.polynomial),
@@ -338,6 +375,10 @@ fn object_infos(
             slot_count: cloud.objects[index].count,
             weight_scale: (1.0 / object.surface.weight_width) as f32,
             blends: u32::from(object.surface.normals == Normals::Blended),
+            material: optics.material,
+            ior: optics.ior,
+            priority: optics.priority,
+            absorption: optics.absorption,
             pad: 0,
         });
         if let Some(own) = own {
@@ -348,6 +389,45 @@ fn object_infos(
         }
     }
     Ok((infos, colors))
+}
+
+/// What kernels take of a material.
+struct Optics {
+    albedo: [f32; 3],
+    material: u32,
+    ior: [f32; 3],
+    priority: i32,
+    absorption: [f32; 3],
+}
+
+impl Optics {
+    fn of(material: &Material) -> Self {
+        let f32s = |v: [f64; 3]| v.map(|x| x as f32);
+        let albedo = match material.albedo {
+            Albedo::Color(color) => f32s(color),
+            Albedo::Default | Albedo::Points => DEFAULT_ALBEDO,
+        };
+        let diffuse = Self {
+            albedo,
+            material: MATERIAL_DIFFUSE,
+            ior: [1.0; 3],
+            priority: 0,
+            absorption: [0.0; 3],
+        };
+        match material.kind {
+            MaterialKind::Diffuse => diffuse,
+            MaterialKind::Mirror { reflectance } => {
+                Self { albedo: f32s(reflectance), material: MATERIAL_MIRROR, ..diffuse }
+            }
+            MaterialKind::Glass { ior, priority, absorption } => Self {
+                material: MATERIAL_GLASS,
+                ior: f32s(ior),
+                priority,
+                absorption: f32s(absorption),
+                ..diffuse
+            },
+        }
+    }
 }
 
 fn local_light(light: &Light, origin: [f64; 3]) -> layout::Light {

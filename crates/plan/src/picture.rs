@@ -14,6 +14,47 @@ pub struct Picture {
     pub tests: u64,
     /// Pixels that hit a surface.
     pub hits: u64,
+    /// Rays, by kind.
+    pub rays: Rays,
+}
+
+/// Rays, by kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Rays {
+    /// From the camera.
+    pub camera: u64,
+    /// Towards lights.
+    pub shadow: u64,
+    /// From mirrors, and from glass inwards.
+    pub reflected: u64,
+    /// Into and out of glass, or through a surface that changes no medium.
+    pub refracted: u64,
+}
+
+impl Rays {
+    /// Of every kind.
+    #[must_use]
+    pub fn all(&self) -> u64 {
+        self.camera + self.shadow + self.reflected + self.refracted
+    }
+}
+
+impl std::ops::Add for Rays {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            camera: self.camera + other.camera,
+            shadow: self.shadow + other.shadow,
+            reflected: self.reflected + other.reflected,
+            refracted: self.refracted + other.refracted,
+        }
+    }
+}
+
+impl std::ops::AddAssign for Rays {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
 }
 
 impl Picture {
@@ -30,7 +71,7 @@ impl Picture {
             .iter()
             .map(|diagnostic| (diagnostic.name().to_owned(), vec![0.0; window.pixels()]))
             .collect();
-        Self { film, origin: plan.cloud.origin, tests: 0, hits: 0 }
+        Self { film, origin: plan.cloud.origin, tests: 0, hits: 0, rays: Rays::default() }
     }
 
     /// Puts the pixels of one tile, row by row, where they belong. `plan` is the picture's own, and

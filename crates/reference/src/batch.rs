@@ -5,14 +5,22 @@
 //! the frame of the grid, and 1.4 times that of discs (docs/benchmarks.md).
 
 use crate::camera_rays::Ray;
-use crate::polynomial::Polynomial;
-use crate::real::{NO_HIT, Real};
+use crate::polynomial::{Polynomial, SHEET_REACH};
+use crate::real::{NO_HIT, Real, V3};
 
 /// Points tested before any is solved: the test uses the nearest hit of before the batch.
 pub(crate) const BATCH: usize = 32;
 
-/// Tests the points of `batch`, at most [`BATCH`] slots.
-pub(crate) fn test_batch<R: Real>(ray: &mut Ray<R>, batch: &[u32], polynomials: &[Polynomial<R>]) {
+/// The sheet that a ray starts on: its normal there, and its object.
+pub(crate) type Sheet<R> = (V3<R>, u32);
+
+/// Tests the points of `batch`, at most [`BATCH`] slots, for a ray that starts on `sheet` if on any.
+pub(crate) fn test_batch<R: Real>(
+    ray: &mut Ray<R>,
+    batch: &[u32],
+    polynomials: &[Polynomial<R>],
+    sheet: Option<Sheet<R>>,
+) {
     let (o, d) = (ray.origin, ray.direction);
     ray.tests += batch.len() as u32;
     let nearest = ray.hit_t;
@@ -21,11 +29,14 @@ pub(crate) fn test_batch<R: Real>(ray: &mut Ray<R>, batch: &[u32], polynomials: 
         if !p.near_trust_ball(o, d, nearest) {
             continue;
         }
-        let t = p.intersect(o, d);
+        let own =
+            sheet.is_some_and(|(normal, object)| p.object == object && p.same_sheet(o, normal));
+        let from = if own { R::of(SHEET_REACH) * p.trust } else { R::of(0.0) };
+        let t = p.intersect(o, d, from);
         let first_of_equals = || {
             polynomials
                 .get(ray.hit_slot as usize)
-                .is_some_and(|hit| (p.object, p.index) < (hit.object, hit.index))
+                .is_none_or(|hit| (p.object, p.index) < (hit.object, hit.index))
         };
         let nearer = t < ray.hit_t || (t == ray.hit_t && t < R::of(NO_HIT) && first_of_equals());
         if nearer && t > ray.after {

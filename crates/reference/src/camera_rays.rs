@@ -17,6 +17,8 @@ pub struct Ray<R> {
     pub after: R,
     /// The point hit, or `NONE`.
     pub hit_slot: u32,
+    /// The point whose surface it starts on, or `NONE`.
+    pub left: u32,
     /// The cell that it is in, or `NONE`.
     pub cell: u32,
     /// Cells crossed so far.
@@ -34,15 +36,23 @@ pub fn camera_ray<R: Real>(params: &CameraParams, grid: &Grid<R>, pixel: [u32; 2
     let y = (R::of_f32(params.half_height) - center(1)) * scale;
     let [right, up, forward] = [params.right, params.up, params.forward].map(V3::of_f32);
     let direction = ((forward + right.times(x)) + up.times(y)).normalize();
-    let origin = V3::of_f32(params.eye);
-    Ray {
-        origin,
-        direction,
-        hit_t: R::of(NO_HIT),
-        after: R::of(0.0),
-        hit_slot: NONE,
-        cell: grid.enter(origin, direction),
-        cells: 0,
-        tests: 0,
+    Ray::new(V3::of_f32(params.eye), direction, grid, NONE)
+}
+
+impl<R: Real> Ray<R> {
+    /// A ray in the first cell that it meets, from the surface of a point or from nowhere.
+    #[must_use]
+    pub fn new(origin: V3<R>, direction: V3<R>, grid: &Grid<R>, left: u32) -> Self {
+        Self {
+            origin,
+            direction,
+            hit_t: R::of(NO_HIT),
+            after: R::of(0.0),
+            hit_slot: NONE,
+            left,
+            cell: grid.enter(origin, direction),
+            cells: 0,
+            tests: 0,
+        }
     }
 }

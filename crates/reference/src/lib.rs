@@ -18,27 +18,32 @@ pub mod grid;
 pub mod grid_build;
 pub mod grid_trace;
 pub mod least_squares;
+pub mod light;
+pub mod media;
+pub mod optics;
 pub mod polynomial;
 pub mod projection;
 pub mod real;
 pub mod refine;
 pub mod shade;
 pub mod surface_hit;
+mod wave;
 
+use bytemuck::Zeroable;
 use camera_rays::Ray;
 use disc_bin::{DiscLists, disc_bin};
-use disc_trace::disc_trace;
 use grid::Grid;
 use grid_build::CellLists;
 use grid_trace::grid_trace;
 use kernels::layout::{FilmPixel, FitOutcome, GridInfo};
-use plan::{Picture, Plan, Window};
+use plan::{Picture, Plan, Rays, Window};
 use points::{NeighborSearch, Watch, plan_grid};
 use polynomial::Polynomial;
 use rayon::prelude::*;
 use real::Real;
 use refine::{PointCells, Refined, Surroundings};
 use surface_hit::{Hit, surface_hit};
+use wave::PixelTrace;
 
 /// Points fitted, and rows of pixels traced, between two looks at the watcher.
 const FIT_BATCH: usize = 1 << 14;
@@ -127,7 +132,9 @@ impl<R: Real> Reference<R> {
                     origin: [tile.origin[0], tile.origin[1] + first],
                     size: [tile.size[0], (ROWS as u32).min(tile.size[1] - first)],
                 };
-                picture.put(plan, &self.outcomes, &rows, &self.trace(plan, &rows, discs.as_ref()));
+                let (pixels, rays) = self.trace(plan, &rows, discs.as_ref());
+                picture.put(plan, &self.outcomes, &rows, &pixels);
+                picture.rays += rays;
                 done += rows.pixels() as u64;
                 watch.done(done);
             }
@@ -143,34 +150,37 @@ impl<R: Real> Reference<R> {
         plan.by_discs(tile).then(|| disc_bin(&params, &self.polynomials)).flatten()
     }
 
-    /// The pixels of one window, row by row; through the grid, or, inside a tile of the picture
+    /// The pixels of one window, row by row, and the rays that took; through the grid, or, inside a tile of the picture
     /// whose discs are given, by them.
     #[must_use]
-    pub fn trace(&self, plan: &Plan, window: &Window, discs: Option<&DiscLists>) -> Vec<FilmPixel> {
+    pub fn trace(
+        &self,
+        plan: &Plan,
+        window: &Window,
+        discs: Option<&DiscLists>,
+    ) -> (Vec<FilmPixel>, Rays) {
         let grid = Grid::<R>::from(&self.grid);
-        let (camera, params) = (plan.camera_of(window), plan.shade_of(window));
-        let shading = shade::Shading {
-            params: &params,
-            objects: &plan.objects,
-            colors: &plan.colors,
-            lights: &plan.lights,
-        };
-        (0..window.size[0] * window.size[1])
+        let (camera, params) = (plan.camera_of(window), plan.wave_of(window));
+        let traced: Vec<(FilmPixel, Rays)> = (0..window.size[0] * window.size[1])
             .into_par_iter()
             .map(|i| {
                 let pixel = [i % window.size[0], i / window.size[0]];
-                let mut ray = camera_rays::camera_ray(&camera, &grid, pixel);
-                match discs {
-                    Some(discs) => {
-                        let in_picture = [0, 1].map(|axis| window.origin[axis] + pixel[axis]);
-                        disc_trace(&mut ray, in_picture, discs, &self.polynomials);
-                    }
-                    None => grid_trace(&mut ray, &grid, &self.lists, &self.polynomials),
-                }
-                let (hit, iterations) = self.settle(plan, &grid, &mut ray);
-                shade::shade(&ray, hit, iterations, &shading)
+                let in_picture = [0, 1].map(|axis| window.origin[axis] + pixel[axis]);
+                let mut trace = PixelTrace {
+                    reference: self,
+                    plan,
+                    grid: &grid,
+                    params: &params,
+                    film: FilmPixel::zeroed(),
+                    rays: Rays { camera: 1, ..Rays::default() },
+                };
+                let ray = camera_rays::camera_ray(&camera, &grid, pixel);
+                trace.run(ray, discs.map(|discs| (discs, in_picture)));
+                (trace.film, trace.rays)
             })
-            .collect()
+            .collect();
+        let rays = traced.iter().fold(Rays::default(), |sum, (_, rays)| sum + *rays);
+        (traced.into_iter().map(|(film, _)| film).collect(), rays)
     }
 
     /// Where a ray that has ended meets the surface, with its object, and the iterations that took.
@@ -196,7 +206,10 @@ impl<R: Real> Reference<R> {
                 if info.blends != 0 {
                     let (x, n) = (hit.position, hit.normal);
                     let (lists, polynomials) = (&self.lists, &self.polynomials);
-                    hit.normal = blend::blended_normal(grid, lists, polynomials, x, n, object);
+                    let blended = blend::blended_normal(grid, lists, polynomials, x, n, object);
+                    if blended.dot(ray.direction) < R::of(0.0) {
+                        hit.normal = blended; // at an outline it may look away
+                    }
                 }
                 return (Some((hit, object)), iterations);
             }
@@ -205,7 +218,7 @@ impl<R: Real> Reference<R> {
                 Refined::Rejected(more) => {
                     iterations += more;
                     refine::resume(ray, grid);
-                    grid_trace(ray, grid, &self.lists, &self.polynomials);
+                    grid_trace(ray, grid, &self.lists, &self.polynomials, false);
                 }
             }
         }

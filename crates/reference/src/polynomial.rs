@@ -3,6 +3,11 @@
 use crate::real::{NO_HIT, Real, V3};
 use kernels::layout;
 
+/// Of the trust radius: how far a ray may still meet the sheet that it starts on.
+pub const SHEET_REACH: f64 = 0.5;
+const SHEET_HEIGHT: f64 = 0.05;
+const SHEET_COSINE: f64 = 0.5;
+
 /// The surface near one point, in world form: with y = x − center,
 /// gradient · y − offset − yᵀ M y = 0 where |y| ≤ trust (method, section 1, step 3).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,9 +73,26 @@ impl<R: Real> Polynomial<R> {
         y0.dot(y0) <= b * b && s + b > R::of(0.0) && s - b <= nearest
     }
 
-    /// Nearest t > 0 where o + t d meets the polynomial inside its trust ball, or [`NO_HIT`]. d has
+    /// The unit normal of the polynomial's own level through x.
+    pub fn normal_at(&self, x: V3<R>) -> V3<R> {
+        let y = x - self.center;
+        (self.gradient - self.apply_curvature(y).times(R::of(2.0))).normalize()
+    }
+
+    /// Whether this is the sheet that a ray starts on at o, where its normal is `normal`.
+    pub fn same_sheet(&self, o: V3<R>, normal: V3<R>) -> bool {
+        let y = o - self.center;
+        let curved = self.apply_curvature(y);
+        let gradient = self.gradient - curved.times(R::of(2.0));
+        let steepness = gradient.dot(gradient).sqrt();
+        let height = (self.gradient.dot(y) - self.offset) - y.dot(curved);
+        height.abs() < (R::of(SHEET_HEIGHT) * self.trust) * steepness
+            && gradient.dot(normal).abs() > R::of(SHEET_COSINE) * steepness
+    }
+
+    /// Nearest t > from where o + t d meets the polynomial inside its trust ball, or [`NO_HIT`]. d has
     /// unit length.
-    pub fn intersect(&self, o: V3<R>, d: V3<R>) -> R {
+    pub fn intersect(&self, o: V3<R>, d: V3<R>, from: R) -> R {
         let zero = R::of(0.0);
         let b = self.trust;
         let (s, y0) = nearest_approach(o, d, self.center);
@@ -87,7 +109,7 @@ impl<R: Real> Polynomial<R> {
         let (first, second) = if r1 < r2 { (r1, r2) } else { (r2, r1) };
         let counts = |root: R| {
             let y = y0 + d.times(root);
-            discriminant >= zero && root.abs() <= b && y.dot(y) <= b * b && s + root > zero
+            discriminant >= zero && root.abs() <= b && y.dot(y) <= b * b && s + root > from
         };
         if counts(first) {
             s + first
@@ -128,10 +150,18 @@ mod tests {
     #[test]
     fn a_plane_is_hit_inside_its_trust_ball_alone() {
         let down = V3([0.0, 0.0, -1.0]);
-        assert_eq!(plane(0.5).intersect(V3([1.25, 2.0, 10.0]), down), 7.0);
-        assert_eq!(plane(0.5).intersect(V3([1.75, 2.0, 10.0]), down), NO_HIT);
-        assert_eq!(plane(0.5).intersect(V3([1.25, 2.0, 2.0]), down), NO_HIT, "behind the origin");
-        assert_eq!(plane(0.5).intersect(V3([1.25, 2.0, 3.25]), down), 0.25, "from inside the ball");
+        assert_eq!(plane(0.5).intersect(V3([1.25, 2.0, 10.0]), down, 0.0), 7.0);
+        assert_eq!(plane(0.5).intersect(V3([1.75, 2.0, 10.0]), down, 0.0), NO_HIT);
+        assert_eq!(
+            plane(0.5).intersect(V3([1.25, 2.0, 2.0]), down, 0.0),
+            NO_HIT,
+            "behind the origin"
+        );
+        assert_eq!(
+            plane(0.5).intersect(V3([1.25, 2.0, 3.25]), down, 0.0),
+            0.25,
+            "from inside the ball"
+        );
         let (y, normal) = plane(0.5).surface_at(V3([1.25, 2.0, 10.0]), down, 7.0);
         assert_eq!((y, normal), (V3([0.25, 0.0, 0.0]), V3([0.0, 0.0, 1.0])));
     }
@@ -143,11 +173,11 @@ mod tests {
         let mut bowl = plane(1.0);
         bowl.diagonal = V3([1.0, 0.0, 0.0]);
         let along = V3([-1.0, 0.0, 0.0]);
-        let t = bowl.intersect(V3([11.0, 2.0, 3.25]), along);
+        let t = bowl.intersect(V3([11.0, 2.0, 3.25]), along, 0.0);
         assert!((t - 9.5).abs() < 1e-14, "x = 0.5 comes before x = -0.5; t = {t}");
-        let t = bowl.intersect(V3([1.25, 2.0, 3.25]), along);
+        let t = bowl.intersect(V3([1.25, 2.0, 3.25]), along, 0.0);
         assert!((t - 0.75).abs() < 1e-14, "from between the two roots; t = {t}");
-        assert_eq!(bowl.intersect(V3([11.0, 2.0, 2.75]), along), NO_HIT, "below the bowl");
+        assert_eq!(bowl.intersect(V3([11.0, 2.0, 2.75]), along, 0.0), NO_HIT, "below the bowl");
     }
 
     /// The perpendicular distance decides before anything is squared that is far away: with the
@@ -167,6 +197,6 @@ mod tests {
         let d = V3([0.0, 0.0, 1.0]);
         assert!(p.near_trust_ball(V3([0.009, 0.0, 0.0]), d, 3e38));
         assert!(!p.near_trust_ball(V3([0.011, 0.0, 0.0]), d, 3e38));
-        assert_eq!(p.intersect(V3([0.009, 0.0, 0.0]), d), 1e4);
+        assert_eq!(p.intersect(V3([0.009, 0.0, 0.0]), d, 0.0), 1e4);
     }
 }

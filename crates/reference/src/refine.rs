@@ -141,7 +141,8 @@ impl<R: Real> Surroundings<'_, R> {
             p.trust = R::of_f32(self.outcomes[nearest].trust);
             iterations += 1;
             let settled = p.offset.abs() <= R::of_f32(info.tolerance) * h;
-            let t = if settled { hit.t } else { p.intersect(ray.origin, ray.direction) };
+            let t =
+                if settled { hit.t } else { p.intersect(ray.origin, ray.direction, R::of(0.0)) };
             if kind == FIT_NO_SURFACE || t >= R::of(NO_HIT) {
                 return Refined::Rejected(iterations);
             }

@@ -1,81 +1,40 @@
-//! Twin of `shade`: Lambert's law at the hit, the background where there is none.
+//! Twin of `shadow_rays` and `shade`: Lambert's law at a diffuse hit, with the lights that reach it.
 
 use crate::camera_rays::Ray;
+use crate::light::sample_light;
 use crate::real::{Real, V3};
 use crate::surface_hit::Hit;
-use kernels::layout::{FilmPixel, LIGHT_POINT, Light, NONE, ObjectInfo, ShadeParams};
+use kernels::layout::{Light, NONE, ObjectInfo};
 
-/// What shading reads besides the ray.
-#[derive(Debug, Clone, Copy)]
-pub struct Shading<'a> {
-    /// Camera axis, background, light count.
-    pub params: &'a ShadeParams,
-    /// One an object.
-    pub objects: &'a [ObjectInfo],
-    /// Three floats a point.
-    pub colors: &'a [f32],
-    /// All lights.
-    pub lights: &'a [Light],
+/// The ray from a hit towards a light and what it would bring; `None` where the light lies behind the
+/// surface.
+pub fn shadow_ray<R: Real>(
+    light: &Light,
+    hit: &Hit<R>,
+    slot: u32,
+    grid: &crate::grid::Grid<R>,
+) -> Option<(Ray<R>, V3<R>)> {
+    let zero = R::of(0.0);
+    let sample = sample_light(light, hit.position, [R::of(0.5); 2]);
+    let arriving = sample.arriving.times(hit.normal.dot(sample.towards).max(zero));
+    let arrives = arriving.0.iter().any(|&channel| channel > zero);
+    arrives.then(|| {
+        let mut ray = Ray::new(hit.position, sample.towards, grid, slot);
+        ray.hit_t = sample.distance;
+        (ray, arriving)
+    })
 }
 
-fn point_color<R: Real>(shading: &Shading<'_>, object: &ObjectInfo, slot: u32) -> V3<R> {
+/// The colour of a point's surface.
+pub fn point_color<R: Real>(object: &ObjectInfo, slot: u32, colors: &[f32]) -> V3<R> {
     if object.first_color == NONE {
         return V3::of_f32(object.albedo);
     }
     let at = (object.first_color + 3 * (slot - object.first_slot)) as usize;
-    V3([0, 1, 2].map(|channel| R::of_f32(shading.colors[at + channel])))
+    V3([0, 1, 2].map(|channel| R::of_f32(colors[at + channel])))
 }
 
-/// What one light sends to a surface at x, by Lambert's law.
-fn irradiance<R: Real>(light: &Light, x: V3<R>, normal: V3<R>) -> V3<R> {
-    let zero = R::of(0.0);
-    let (vector, strength) = (V3::of_f32(light.vector), V3::of_f32(light.strength));
-    if light.kind != LIGHT_POINT {
-        return strength.times(normal.dot(vector).max(zero));
-    }
-    let towards = vector - x;
-    let square = towards.dot(towards);
-    if square <= zero {
-        return V3::splat(zero);
-    }
-    let l = towards.over(square.sqrt());
-    strength.over(square).times(normal.dot(l).max(zero))
-}
-
-/// What one pixel shows. `hit` comes with its object; `iterations` are those of its refinement.
-#[must_use]
-pub fn shade<R: Real>(
-    ray: &Ray<R>,
-    hit: Option<(Hit<R>, u32)>,
-    iterations: u32,
-    shading: &Shading<'_>,
-) -> FilmPixel {
-    let params = shading.params;
-    let counts = [ray.tests, ray.cells, ray.hit_slot, iterations];
-    let Some((hit, object)) = hit else {
-        let [r, g, b] = if params.transparent != 0 { [0.0; 3] } else { params.background };
-        return FilmPixel {
-            color: [r, g, b, 0.0],
-            position_depth: [0.0, 0.0, 0.0, f32::INFINITY],
-            normal_object: [0.0, 0.0, 0.0, -1.0],
-            counts,
-        };
-    };
-    let Hit { position: x, normal, .. } = hit;
-    let light = shading
-        .lights
-        .iter()
-        .take(params.light_count as usize)
-        .fold(V3::splat(R::of(0.0)), |sum, light| sum + irradiance(light, x, normal));
-    let color = point_color(shading, &shading.objects[object as usize], ray.hit_slot);
-    let [r, g, b] = (color * light.times(R::of(std::f64::consts::FRAC_1_PI))).to_f32();
-    let [px, py, pz] = x.to_f32();
-    let [nx, ny, nz] = normal.to_f32();
-    let depth = hit.t * ray.direction.dot(V3::of_f32(params.forward));
-    FilmPixel {
-        color: [r, g, b, 1.0],
-        position_depth: [px, py, pz, depth.to_f32()],
-        normal_object: [nx, ny, nz, object as f32],
-        counts,
-    }
+/// The radiance that a diffuse surface scatters under this irradiance.
+pub fn lambert<R: Real>(albedo: V3<R>, irradiance: V3<R>) -> V3<R> {
+    albedo * irradiance.times(R::of(std::f64::consts::FRAC_1_PI))
 }

@@ -1,16 +1,24 @@
-//! One frame: tile after tile, pass after pass.
+//! One frame: tile after tile, wave after wave, pass after pass.
+//!
+//! A wave is the rays of one generation: those from the camera, then those that the surfaces they met
+//! reflect and refract, until none is left. Each is traced to its end by passes over the ray state, and so
+//! are the rays from its diffuse hits towards each light. Between waves the rays that go on are moved
+//! together, so that those that ended cost nothing.
 
 use crate::RenderError;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
-    CameraRays, DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Records, Refine, RefineIo, Shade,
-    ShadeIo, SurfaceHit, SurfaceHitIo,
+    CameraRays, Classify, ClassifyIo, DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Records,
+    Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start,
+    SurfaceHit, SurfaceHitIo,
 };
 use crate::state::RayState;
+use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder, Timings};
-use kernels::layout::{FilmPixel, Hit, TraceParams};
-use plan::{Picture, Plan, Window};
+use kernels::layout::{FilmPixel, Hit, TraceParams, WaveParams};
+use plan::{Picture, Plan, Rays, Window, camera_wave};
 use points::Watch;
+use points::device::Scan;
 use points::device::Surfaces;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -33,8 +41,8 @@ pub struct FrameStats {
     pub trace: Duration,
     /// Dispatches of `grid_trace` and `disc_trace`.
     pub passes: u32,
-    /// Rays from the camera.
-    pub camera_rays: u64,
+    /// Pixels whose camera rays have ended.
+    pixels: u64,
     /// GPU time of each kernel, in milliseconds, by name, in the order of first use.
     pub kernels: Vec<(&'static str, f64)>,
 }
@@ -59,15 +67,56 @@ pub struct Renderer {
     film: Buffer,
     hits: Buffer,
     live: Buffer,
+    wave: WaveBuffers,
     state: RayState,
+    shadows: RayState,
+    discs: Discs,
+    passes: Passes,
+    recorder: Recorder,
+}
+
+/// The pipelines of a frame.
+struct Passes {
     camera_rays: CameraRays,
+    disc_trace: DiscTrace,
     grid_trace: GridTrace,
     surface_hit: SurfaceHit,
     refine: Refine,
-    discs: Discs,
-    disc_trace: DiscTrace,
+    classify: Classify,
+    shadow_rays: ShadowRays,
     shade: Shade,
-    recorder: Recorder,
+    scatter: Scatter,
+    scan: Scan,
+}
+
+impl Passes {
+    fn new(device: &Arc<Device>, records: Records) -> Result<Self, RenderError> {
+        Ok(Self {
+            camera_rays: CameraRays::new(device)?,
+            disc_trace: DiscTrace::new(device, records)?,
+            grid_trace: GridTrace::new(device, records)?,
+            surface_hit: SurfaceHit::new(device)?,
+            refine: Refine::new(device, records)?,
+            classify: Classify::new(device)?,
+            shadow_rays: ShadowRays::new(device)?,
+            shade: Shade::new(device)?,
+            scatter: Scatter::new(device)?,
+            scan: Scan::new(device)?,
+        })
+    }
+}
+
+/// Which rays a pass works on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Traced {
+    /// From the camera, by the screen tiles of a tile of the picture.
+    ByDiscs([u32; 2]),
+    /// From the camera.
+    Camera,
+    /// From surfaces.
+    Scattered,
+    /// From surfaces towards a light, as far as the first hit.
+    Shadows,
 }
 
 impl Renderer {
@@ -98,26 +147,22 @@ impl Renderer {
             watch,
         )?;
         let tiles = plan.tiles();
-        let largest = |axis: usize| tiles.iter().map(|tile| tile.size[axis]).max().unwrap_or(1);
-        let tile_size = [largest(0), largest(1)];
-        let tile_pixels = u64::from(tile_size[0]) * u64::from(tile_size[1]);
-        let film_bytes = tile_pixels * size_of::<FilmPixel>() as u64;
+        let pixels = tiles.iter().map(Window::pixels).max().unwrap_or(1) as u64;
+        let rays = tiles.iter().map(camera_wave).max().unwrap_or(1) * plan.rays_per_pixel();
+        let shadows = if plan.lights.is_empty() { 1 } else { rays };
         Ok(Self {
             surfaces,
             objects: Buffer::from_slice(device, "objects", &plan.objects)?,
             colors: Buffer::from_slice(device, "point colors", &plan.colors)?,
             lights: Buffer::from_slice(device, "lights", &plan.lights)?,
-            film: Buffer::new(device, "film", film_bytes)?,
-            hits: Buffer::new(device, "hits", tile_pixels * size_of::<Hit>() as u64)?,
+            film: Buffer::new(device, "film", pixels * size_of::<FilmPixel>() as u64)?,
+            hits: Buffer::new(device, "hits", u64::from(rays) * size_of::<Hit>() as u64)?,
             live: Buffer::new(device, "live rays", 8)?,
-            state: RayState::new(device, tile_size)?,
-            camera_rays: CameraRays::new(device)?,
-            grid_trace: GridTrace::new(device, records)?,
-            surface_hit: SurfaceHit::new(device)?,
-            refine: Refine::new(device, records)?,
+            wave: WaveBuffers::new(device, rays, plan.scatters())?,
+            state: RayState::new(device, rays)?,
+            shadows: RayState::new(device, shadows)?,
             discs: Discs::new(device, plan.cloud.points.len() as u32)?,
-            disc_trace: DiscTrace::new(device, records)?,
-            shade: Shade::new(device)?,
+            passes: Passes::new(device, records)?,
             recorder: Recorder::new(device)?,
         })
     }
@@ -150,26 +195,54 @@ impl Renderer {
             vec![EMPTY_PIXEL; (self.film.bytes() / size_of::<FilmPixel>() as u64) as usize];
         for tile in plan.tiles() {
             let started = Instant::now();
-            self.start_rays(plan, &tile);
-            let by_discs = self.bin_discs(plan, &tile, &mut stats)?;
-            self.trace_to_the_end(plan, &tile, by_discs, &mut stats, watch)?;
-            self.settle_hits(plan, &tile, &mut stats, watch)?;
-            self.shade_tile(plan, &tile, &mut stats)?;
+            self.recorder.fill(self.wave.tally(), 0, self.wave.tally().bytes(), 0);
+            self.trace_tile(plan, &tile, &mut stats, watch)?;
             stats.trace += started.elapsed();
-            stats.camera_rays += tile.pixels() as u64;
+            stats.pixels += tile.pixels() as u64;
+            let [shadow, reflected, refracted] = self.wave.read_tally()?;
+            let camera = tile.pixels() as u64;
+            picture.rays += Rays { camera, shadow, reflected, refracted };
             let pixels = &mut pixels[..tile.pixels()];
             self.film.read(0, pixels)?;
             picture.put(plan, &self.surfaces.outcomes, &tile, pixels);
-            watch.done(stats.camera_rays);
+            watch.done(stats.pixels);
         }
         Ok((picture, stats))
     }
 
+    /// One tile: the wave from the camera, and all that come of it.
+    fn trace_tile(
+        &mut self,
+        plan: &Plan,
+        tile: &Window,
+        stats: &mut FrameStats,
+        watch: &dyn Watch,
+    ) -> Result<(), RenderError> {
+        let mut params = plan.wave_of(tile);
+        self.start_rays(plan, tile);
+        let mut traced = match self.bin_discs(plan, tile, stats)? {
+            true => Traced::ByDiscs(tile.size),
+            false => Traced::Camera,
+        };
+        while params.ray_count > 0 {
+            self.trace_to_the_end(plan, params.ray_count, traced, stats, watch)?;
+            traced = if traced == Traced::Scattered { traced } else { Traced::Camera };
+            self.settle_hits(plan, params.ray_count, traced, stats, watch)?;
+            let lit = self.classify(plan, &params, stats)?;
+            self.shade(plan, &WaveParams { ray_count: lit, ..params }, stats, watch)?;
+            params.ray_count = self.scatter(plan, &params, stats)?;
+            params.wave += 1;
+            traced = Traced::Scattered;
+        }
+        Ok(())
+    }
+
     fn start_rays(&mut self, plan: &Plan, tile: &Window) {
-        self.camera_rays.record(
+        self.passes.camera_rays.record(
             &mut self.recorder,
             &self.surfaces.grid_info,
             &self.state.current,
+            self.wave.paths(),
             &plan.camera_of(tile),
         );
     }
@@ -189,41 +262,45 @@ impl Renderer {
         Ok(lists.is_some())
     }
 
-    /// Passes until no ray lives: the paper's loop on the CPU. Through the grid, unless the rays are
-    /// fresh from the camera and `by_discs`.
+    /// Passes until no ray lives: the paper's loop on the CPU.
     fn trace_to_the_end(
         &mut self,
         plan: &Plan,
-        tile: &Window,
-        by_discs: bool,
+        ray_count: u32,
+        traced: Traced,
         stats: &mut FrameStats,
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
         let cells = if plan.cells_per_pass == 0 { u32::MAX } else { plan.cells_per_pass };
-        let params = TraceParams { tile_size: tile.size, cells, work: WORK_PER_PASS };
-        let mut live = [u32::MAX];
-        while live != [0] {
+        let any_hit = u32::from(traced == Traced::Shadows);
+        let params = TraceParams { ray_count, cells, work: WORK_PER_PASS, any_hit };
+        let state = if traced == Traced::Shadows { &mut self.shadows } else { &mut self.state };
+        let (surfaces, live) = (&self.surfaces, &self.live);
+        let mut left = [u32::MAX];
+        while left != [0] {
             if watch.interrupted() {
                 return Err(RenderError::Interrupted);
             }
-            self.recorder.fill(&self.live, 0, 4, 0);
-            match self.discs.lists().filter(|_| by_discs) {
-                Some(lists) => {
-                    let (surfaces, state, live) = (&self.surfaces, &self.state, &self.live);
+            self.recorder.fill(live, 0, 4, 0);
+            match (traced, self.discs.lists()) {
+                (Traced::ByDiscs(tile_size), Some(lists)) => {
                     let io = DiscTraceIo { lists, surfaces, state, live };
-                    self.disc_trace.record(&mut self.recorder, io, &params);
+                    self.passes.disc_trace.record(&mut self.recorder, io, tile_size, &params);
                 }
-                None => {
-                    let (surfaces, state, live) = (&self.surfaces, &self.state, &self.live);
+                _ => {
+                    let from = match traced {
+                        Traced::ByDiscs(_) | Traced::Camera => Start::Camera,
+                        Traced::Scattered | Traced::Shadows => Start::Surface,
+                    };
                     let io = GridTraceIo { surfaces, state, live };
-                    self.grid_trace.record(&mut self.recorder, io, &params);
+                    self.passes.grid_trace.record(&mut self.recorder, io, from, &params);
                 }
             }
             stats.add_kernels(&self.recorder.submit()?.passes);
-            self.state.swap();
+            state.swap();
             stats.passes += 1;
-            self.live.read(0, &mut live)?;
-            watch.done(stats.camera_rays + tile.pixels() as u64 - u64::from(live[0]));
+            live.read(0, &mut left)?;
+            watch.done(stats.pixels);
         }
         Ok(())
     }
@@ -233,12 +310,13 @@ impl Renderer {
     fn settle_hits(
         &mut self,
         plan: &Plan,
-        tile: &Window,
+        ray_count: u32,
+        traced: Traced,
         stats: &mut FrameStats,
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
-        let params = TraceParams { tile_size: tile.size, cells: 0, work: 0 };
-        let bytes = (tile.pixels() * size_of::<Hit>()) as u64;
+        let params = TraceParams { ray_count, cells: 0, work: 0, any_hit: 0 };
+        let bytes = u64::from(ray_count) * size_of::<Hit>() as u64;
         self.recorder.fill(&self.hits, 0, bytes, 0);
         loop {
             self.recorder.fill(&self.live, 0, 8, 0);
@@ -249,17 +327,18 @@ impl Renderer {
                 hits: &self.hits,
                 live: &self.live,
             };
-            self.surface_hit.record(&mut self.recorder, io, &params);
+            self.passes.surface_hit.record(&mut self.recorder, io, &params);
             if !plan.refines() {
-                return Ok(()); // recorded; shading submits it
+                return Ok(()); // recorded; what follows submits it
             }
             let [pending, _] = self.submit_and_count(stats)?;
             if self.refine_hits(pending, &params, stats, watch)? == 0 {
                 return Ok(());
             }
             let (surfaces, state) = (&self.surfaces, &self.state.current);
-            self.refine.record_resume(&mut self.recorder, surfaces, state, &self.hits, &params);
-            self.trace_to_the_end(plan, tile, false, stats, watch)?;
+            let (rec, hits) = (&mut self.recorder, &self.hits);
+            self.passes.refine.record_resume(rec, surfaces, state, hits, &params);
+            self.trace_to_the_end(plan, ray_count, traced, stats, watch)?;
         }
     }
 
@@ -286,7 +365,7 @@ impl Renderer {
                 hits: &self.hits,
                 live: &self.live,
             };
-            self.refine.record(&mut self.recorder, io, params);
+            self.passes.refine.record(&mut self.recorder, io, params);
             let [still_pending, rejected] = self.submit_and_count(stats)?;
             pending = still_pending;
             all_rejected += rejected;
@@ -302,23 +381,104 @@ impl Renderer {
         Ok(counts)
     }
 
-    fn shade_tile(
+    /// What becomes of each ray of a wave; returns how many hit a diffuse surface.
+    fn classify(
         &mut self,
         plan: &Plan,
-        tile: &Window,
+        params: &WaveParams,
         stats: &mut FrameStats,
-    ) -> Result<(), RenderError> {
-        let io = ShadeIo {
+    ) -> Result<u32, RenderError> {
+        let io = ClassifyIo {
             state: &self.state.current,
             polynomials: &self.surfaces.polynomials,
             hits: &self.hits,
             objects: &self.objects,
-            colors: &self.colors,
-            lights: &self.lights,
             film: &self.film,
+            paths: self.wave.paths(),
+            lit: self.wave.lit(),
+            next: self.wave.next(),
+            lit_rays: self.wave.lit_rays(),
         };
-        self.shade.record(&mut self.recorder, io, &plan.shade_of(tile));
+        let (rec, scan) = (&mut self.recorder, &self.passes.scan);
+        self.passes.classify.record(rec, io, params);
+        self.wave.record_offsets(rec, scan, self.wave.lit(), params.ray_count);
+        if plan.scatters() {
+            self.wave.record_offsets(rec, scan, self.wave.next(), params.ray_count);
+        }
+        self.passes.classify.record_list(rec, io, params);
+        stats.add_kernels(&rec.submit()?.passes);
+        Ok(WaveBuffers::read_total(self.wave.lit(), params.ray_count)?)
+    }
+
+    /// Light after light, shadow rays from a wave's diffuse hits, and then Lambert's law. The wave's rays
+    /// are those hits.
+    fn shade(
+        &mut self,
+        plan: &Plan,
+        params: &WaveParams,
+        stats: &mut FrameStats,
+        watch: &dyn Watch,
+    ) -> Result<(), RenderError> {
+        if params.ray_count == 0 {
+            return Ok(());
+        }
+        for light in 0..params.light_count {
+            let io = ShadowRaysIo {
+                shadows: &self.shadows,
+                grid_info: &self.surfaces.grid_info,
+                hits: &self.hits,
+                lights: &self.lights,
+                film: &self.film,
+                paths: self.wave.paths(),
+                lit_rays: self.wave.lit_rays(),
+                light_sums: self.wave.light_sums(),
+                tally: self.wave.tally(),
+            };
+            let params = WaveParams { light, ..*params };
+            self.passes.shadow_rays.record(&mut self.recorder, io, &params);
+            self.shadows.swap();
+            self.trace_to_the_end(plan, params.ray_count, Traced::Shadows, stats, watch)?;
+        }
+        let io = ShadeIo {
+            shadows: &self.shadows.current,
+            polynomials: &self.surfaces.polynomials,
+            objects: &self.objects,
+            colors: &self.colors,
+            film: &self.film,
+            paths: self.wave.paths(),
+            lit_rays: self.wave.lit_rays(),
+            light_sums: self.wave.light_sums(),
+        };
+        self.passes.shade.record(&mut self.recorder, io, params);
         stats.add_kernels(&self.recorder.submit()?.passes);
         Ok(())
+    }
+
+    /// Makes the next wave; returns how many rays it has.
+    fn scatter(
+        &mut self,
+        plan: &Plan,
+        params: &WaveParams,
+        stats: &mut FrameStats,
+    ) -> Result<u32, RenderError> {
+        if !plan.scatters() {
+            return Ok(0);
+        }
+        let io = ScatterIo {
+            state: &self.state,
+            surfaces: &self.surfaces,
+            hits: &self.hits,
+            objects: &self.objects,
+            film: &self.film,
+            paths: self.wave.paths(),
+            next_paths: self.wave.next_paths(),
+            next: self.wave.next(),
+            tally: self.wave.tally(),
+        };
+        self.passes.scatter.record(&mut self.recorder, io, params);
+        stats.add_kernels(&self.recorder.submit()?.passes);
+        self.state.swap();
+        self.wave.swap();
+        Ok(WaveBuffers::read_total(self.wave.next(), params.ray_count)?)
     }
 }

@@ -10,6 +10,7 @@ mod discs;
 mod frame;
 mod passes;
 mod state;
+mod wave;
 
 pub use discs::DiscLists;
 pub use frame::{FrameStats, Renderer};

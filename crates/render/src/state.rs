@@ -1,10 +1,11 @@
 //! The ray state: four storage images, twice, in place of the paper's render targets.
 
 use gpu::{Device, GpuError, Image, ImageFormat};
+use kernels::layout::STATE_ROW;
 use std::sync::Arc;
 
-/// Position, direction, cell, accumulated colour, with the nearest hit so far packed among them
-/// (`glsl/shared/state.glsl`).
+/// Position, direction, cell and where the ray started, with the nearest hit so far packed among them
+/// (`glsl/shared/state.glsl`). The rays of a wave lie one after another, `STATE_ROW` a row.
 pub(crate) type StateImages = [Image; 4];
 
 /// What a pass reads, and what it writes.
@@ -14,14 +15,16 @@ pub(crate) struct RayState {
 }
 
 impl RayState {
-    pub fn new(device: &Arc<Device>, size: [u32; 2]) -> Result<Self, GpuError> {
+    /// For so many rays.
+    pub fn new(device: &Arc<Device>, rays: u32) -> Result<Self, GpuError> {
+        let size = [STATE_ROW, rays.div_ceil(STATE_ROW).max(1)];
         let image = |name| Image::new(device, name, size, ImageFormat::Rgba32Uint);
         let set = || -> Result<StateImages, GpuError> {
             Ok([
                 image("ray position")?,
                 image("ray direction")?,
                 image("ray cell")?,
-                image("ray color")?,
+                image("ray start")?,
             ])
         };
         Ok(Self { current: set()?, next: set()? })

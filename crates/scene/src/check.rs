@@ -326,6 +326,17 @@ pub(crate) fn direction_has_a_length(light: &Reader<'_>) -> Result<(), Fault> {
     }
 }
 
+/// An Abbe number goes with one index, not with one a channel.
+pub(crate) fn dispersion_is_stated_once(material: &Reader<'_>) -> Result<(), Fault> {
+    let several = material.written("ior").is_some_and(|ior| matches!(ior.value, Value::List(_)));
+    if material.written("abbe").is_some() && several {
+        let message = "found beside an ior of three numbers, expected one number there; remove \
+                       this or give one ior";
+        return Err(("abbe", message.into()));
+    }
+    Ok(())
+}
+
 fn long_enough(name: &'static str, v: [f64; 3]) -> Result<(), Fault> {
     let length = length(v);
     if length >= SHORT {

@@ -3,7 +3,7 @@
 //! The checker, the defaults of the public types, the JSON Schema and the tables of docs/scene.md
 //! all come from [`SCENE`]. What is known here but not built is listed in `not_built.rs`.
 
-use crate::check::{camera_has_a_view, direction_has_a_length};
+use crate::check::{camera_has_a_view, direction_has_a_length, dispersion_is_stated_once};
 use crate::read::Reader;
 
 /// A key's name and what is wrong with its value.
@@ -421,8 +421,8 @@ pub(crate) static SURFACE: Table = Table {
 
 pub(crate) static MATERIAL: Table = Table {
     header: "[objects.material]",
-    doc: "How the surface scatters light.",
-    whole: None,
+    doc: "How the surface scatters light. Keys of another kind than the material's have no effect.",
+    whole: Some(dispersion_is_stated_once),
     keys: &[
         key(
             "kind",
@@ -453,7 +453,14 @@ pub(crate) static MATERIAL: Table = Table {
                 Kind::Vector(numbers(0.1, 10.0, "")),
             ]),
             Value("1.5"),
-            "Glass: refractive index, one number or one a channel.",
+            "Glass: refractive index, one number or one for each of red, green and blue.",
+        ),
+        key(
+            "abbe",
+            Kind::Number(numbers(1.0, 1000.0, "")),
+            Words("no dispersion", "64.2"),
+            "Glass: Abbe number; `ior` is then the index n_d at 587.6 nm, and those of the channels are \
+             Cauchy's n = A + B/λ² at 611, 549 and 464 nm.",
         ),
         key(
             "priority",

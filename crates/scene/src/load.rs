@@ -5,9 +5,9 @@ use crate::error::{Problem, Source};
 use crate::keys::{self, SCENE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
-    Albedo, Background, Camera, FeatureSize, Fresnel, ImageSettings, Light, Material, Normals,
-    Object, Polynomial, Primary, RayLoop, Refine, RenderSettings, Scene, SceneError, Surface,
-    Transform, Up,
+    Albedo, Background, Camera, FeatureSize, Fresnel, ImageSettings, Light, Material, MaterialKind,
+    Normals, Object, Polynomial, Primary, RayLoop, Refine, RenderSettings, Scene, SceneError,
+    Surface, Transform, Up,
 };
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -313,8 +313,38 @@ impl Material {
             Some(value) => to_vector(value)
                 .map_or_else(|| table.unlike("an albedo", "albedo", value), Albedo::Color),
         };
-        Self { albedo }
+        let kind = match table.text("kind").as_str() {
+            "mirror" => MaterialKind::Mirror { reflectance: table.vector("reflectance") },
+            "glass" => MaterialKind::Glass {
+                ior: ior_of_channels(table),
+                // Within the range of the key, which is far inside i32.
+                priority: to_number(&table.value("priority")).map_or(0, |priority| priority as i32),
+                absorption: table.vector("absorption"),
+            },
+            _ => MaterialKind::Diffuse,
+        };
+        Self { kind, albedo }
     }
+}
+
+/// Squares of reciprocal wavelengths in µm⁻²: of the dominant wavelengths of Rec. 709's primaries, and of the
+/// spectral lines d, F and C that Abbe numbers are defined by.
+const CHANNELS: [f64; 3] =
+    [1.0 / (0.6114 * 0.6114), 1.0 / (0.5491 * 0.5491), 1.0 / (0.4642 * 0.4642)];
+const LINE_D: f64 = 1.0 / (0.587_56 * 0.587_56);
+const LINE_F: f64 = 1.0 / (0.486_13 * 0.486_13);
+const LINE_C: f64 = 1.0 / (0.656_27 * 0.656_27);
+
+/// The refractive index of each channel; from n_d and an Abbe number V by Cauchy's formula n = A + B/λ²,
+/// where V = (n_d − 1) / (n_F − n_C).
+fn ior_of_channels(table: &Reader<'_>) -> [f64; 3] {
+    let ior = table.value("ior");
+    let Some(index) = to_number(&ior) else { return table.vector("ior") };
+    let Some(abbe) = table.written("abbe").and_then(|node| to_number(&node.value)) else {
+        return [index; 3];
+    };
+    let b = (index - 1.0) / (abbe * (LINE_F - LINE_C));
+    CHANNELS.map(|channel| index + b * (channel - LINE_D))
 }
 
 impl Default for ImageSettings {

@@ -44,13 +44,8 @@ pub(crate) const NOT_BUILT: &[NotBuilt] = &[
     key("objects.filter"),
     key("objects.volume"),
     key("objects.surface.boundary_clip"),
-    value("objects.material.kind", When::Is(&["mirror", "glass"]), "use \"diffuse\""),
     key("objects.material.texture"),
     key("objects.material.texture_axis"),
-    key("objects.material.reflectance"),
-    key("objects.material.ior"),
-    key("objects.material.priority"),
-    key("objects.material.absorption"),
 ];
 
 /// The entry of a key, if it has one.

@@ -206,11 +206,34 @@ pub enum FeatureSize {
     Constant(f64),
 }
 
-/// How a surface scatters light. Diffuse (Lambert) is what is built.
+/// How a surface scatters light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
-    /// The share of light that is scattered back.
+    /// What becomes of a ray.
+    pub kind: MaterialKind,
+    /// The share of light that a diffuse surface scatters back.
     pub albedo: Albedo,
+}
+
+/// What becomes of a ray at a surface (docs/method.md, section 4).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum MaterialKind {
+    /// Lambert's law on both sides.
+    Diffuse,
+    /// A perfect mirror.
+    Mirror {
+        /// The share reflected, linear RGB, each 0 to 1.
+        reflectance: [f64; 3],
+    },
+    /// Smooth glass.
+    Glass {
+        /// Refractive index of red, green and blue, each 0.1 to 10.
+        ior: [f64; 3],
+        /// The highest counts where media overlap, -1000000 to 1000000; ties go to the last object.
+        priority: i32,
+        /// σ in exp(−σℓ) over the length ℓ inside, per scene unit, each 0 to 1e15.
+        absorption: [f64; 3],
+    },
 }
 
 /// Where a diffuse surface takes its albedo from.

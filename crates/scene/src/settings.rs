@@ -1,8 +1,8 @@
 //! A scene as canonical TOML, for the header of the pictures it makes.
 
 use crate::{
-    Albedo, FeatureSize, Fresnel, Light, Normals, Object, Polynomial, Refine, RenderSettings,
-    Scene, Surface,
+    Albedo, FeatureSize, Fresnel, Light, Material, MaterialKind, Normals, Object, Polynomial,
+    Refine, RenderSettings, Scene, Surface,
 };
 use std::fmt::{self, Write};
 
@@ -79,9 +79,25 @@ fn write_object(out: &mut String, object: &Object) -> fmt::Result {
     writeln!(out, "rotate = {:?}", object.transform.rotate)?;
     writeln!(out, "translate = {:?}", object.transform.translate)?;
     write_surface(out, &object.surface)?;
+    write_material(out, &object.material)
+}
+
+fn write_material(out: &mut String, material: &Material) -> fmt::Result {
     writeln!(out, "\n[objects.material]")?;
-    writeln!(out, "kind = \"diffuse\"")?;
-    match object.material.albedo {
+    match material.kind {
+        MaterialKind::Diffuse => writeln!(out, "kind = \"diffuse\"")?,
+        MaterialKind::Mirror { reflectance } => {
+            writeln!(out, "kind = \"mirror\"")?;
+            writeln!(out, "reflectance = {reflectance:?}")?;
+        }
+        MaterialKind::Glass { ior, priority, absorption } => {
+            writeln!(out, "kind = \"glass\"")?;
+            writeln!(out, "ior = {ior:?}")?;
+            writeln!(out, "priority = {priority}")?;
+            writeln!(out, "absorption = {absorption:?}")?;
+        }
+    }
+    match material.albedo {
         // The default depends on the points, so it has no value to write.
         Albedo::Default => Ok(()),
         Albedo::Points => writeln!(out, "albedo = \"points\""),

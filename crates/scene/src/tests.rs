@@ -147,7 +147,7 @@ fn every_built_key_is_read() {
             close_gaps: false,
             refine: Refine::Project { tolerance: 2e-5, max_iterations: 12 },
         },
-        material: Material { albedo: Albedo::Color([0.2, 0.4, 0.6]) },
+        material: Material { kind: MaterialKind::Diffuse, albedo: Albedo::Color([0.2, 0.4, 0.6]) },
     };
     assert_eq!(scene.objects[0], knot);
     assert_eq!(scene.objects[1].material.albedo, Albedo::Points);

@@ -3,7 +3,7 @@
 use super::{bind_state, over_pixels, state_bindings};
 use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
-use kernels::layout::{CameraParams, STATE_OUT, TRACE_INFO};
+use kernels::layout::{CameraParams, STATE_OUT, TRACE_INFO, WAVE_PATHS};
 use kernels::spirv;
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ impl CameraRays {
 
     pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
         let mut bindings = state_bindings(STATE_OUT).to_vec();
-        bindings.push((TRACE_INFO, Binding::StorageBuffer));
+        bindings.extend([TRACE_INFO, WAVE_PATHS].map(|at| (at, Binding::StorageBuffer)));
         let params = size_of::<CameraParams>();
         let kernel = Kernel::new(device, Self::NAME, &spirv::camera_rays(), &bindings, params)?;
         Ok(Self { kernel })
@@ -29,10 +29,12 @@ impl CameraRays {
         rec: &mut Recorder,
         grid_info: &Buffer,
         out: &StateImages,
+        paths: &Buffer,
         params: &CameraParams,
     ) {
         bind_state(rec.pass(Self::NAME, &self.kernel), STATE_OUT, out)
             .buffer(TRACE_INFO, grid_info)
+            .buffer(WAVE_PATHS, paths)
             .push(params)
             .dispatch(over_pixels(params.tile_size));
     }

@@ -46,9 +46,14 @@ impl DiscTrace {
 
     /// Records one pass over rays that `camera_rays` started; the caller then swaps the ray state.
     /// They cross no cells, so that K does not count.
-    pub fn record(&self, rec: &mut Recorder, io: DiscTraceIo<'_>, params: &TraceParams) {
-        let &TraceParams { tile_size, work, .. } = params;
-        let params = DiscTraceParams { ranks: io.lists.ranks, tile_size, work };
+    pub fn record(
+        &self,
+        rec: &mut Recorder,
+        io: DiscTraceIo<'_>,
+        tile_size: [u32; 2],
+        params: &TraceParams,
+    ) {
+        let params = DiscTraceParams { ranks: io.lists.ranks, tile_size, work: params.work };
         let pass = rec.pass(Self::NAME, &self.kernel);
         let pass = bind_state(pass, STATE_IN, &io.state.current);
         bind_state(pass, STATE_OUT, &io.state.next)

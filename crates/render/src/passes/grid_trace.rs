@@ -1,6 +1,6 @@
 //! The pass `grid_trace`.
 
-use super::{bind_state, over_pixels, state_bindings};
+use super::{bind_state, line, state_bindings};
 use crate::state::RayState;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
@@ -44,18 +44,33 @@ pub(crate) struct GridTraceIo<'a> {
     pub live: &'a Buffer,
 }
 
+/// Where the rays of a wave start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Start {
+    /// At the camera.
+    Camera,
+    /// On a surface, whose own sheet they do not meet again at once.
+    Surface,
+}
+
 /// Lets each live ray cross up to K cells of the grid (\[T\] §5).
 pub(crate) struct GridTrace {
-    kernel: Kernel,
+    from_camera: Kernel,
+    leaving: Kernel,
 }
 
 impl GridTrace {
     pub const NAME: &'static str = "grid_trace";
 
     pub fn new(device: &Arc<Device>, records: Records) -> Result<Self, GpuError> {
-        let (module, polynomials) = match records {
-            Records::Texels => (spirv::grid_trace_texels(), Binding::UniformTexelBuffer),
-            Records::Storage => (spirv::grid_trace(), Binding::StorageBuffer),
+        let (modules, polynomials) = match records {
+            Records::Texels => (
+                [spirv::grid_trace_texels(), spirv::grid_trace_leaving_texels()],
+                Binding::UniformTexelBuffer,
+            ),
+            Records::Storage => {
+                ([spirv::grid_trace(), spirv::grid_trace_leaving()], Binding::StorageBuffer)
+            }
         };
         let mut bindings = state_bindings(STATE_IN).to_vec();
         bindings.extend(state_bindings(STATE_OUT));
@@ -63,13 +78,23 @@ impl GridTrace {
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         bindings.push((TRACE_POLYNOMIALS, polynomials));
         let params = size_of::<TraceParams>();
-        let kernel = Kernel::new(device, Self::NAME, &module, &bindings, params)?;
-        Ok(Self { kernel })
+        let kernel = |module: &[u32]| Kernel::new(device, Self::NAME, module, &bindings, params);
+        Ok(Self { from_camera: kernel(&modules[0])?, leaving: kernel(&modules[1])? })
     }
 
     /// Records one pass; the caller then swaps the ray state.
-    pub fn record(&self, rec: &mut Recorder, io: GridTraceIo<'_>, params: &TraceParams) {
-        let pass = rec.pass(Self::NAME, &self.kernel);
+    pub fn record(
+        &self,
+        rec: &mut Recorder,
+        io: GridTraceIo<'_>,
+        start: Start,
+        params: &TraceParams,
+    ) {
+        let kernel = match start {
+            Start::Camera => &self.from_camera,
+            Start::Surface => &self.leaving,
+        };
+        let pass = rec.pass(Self::NAME, kernel);
         let pass = bind_state(pass, STATE_IN, &io.state.current);
         bind_state(pass, STATE_OUT, &io.state.next)
             .buffer(TRACE_INFO, &io.surfaces.grid_info)
@@ -78,6 +103,6 @@ impl GridTrace {
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
             .buffer(TRACE_LIVE, io.live)
             .push(params)
-            .dispatch(over_pixels(params.tile_size));
+            .dispatch(line(params.ray_count));
     }
 }

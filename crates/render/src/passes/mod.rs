@@ -1,29 +1,36 @@
 //! The passes of a frame. Each owns its pipeline, borrows what it works on, and offers `record`.
 
 mod camera_rays;
+mod classify;
 mod disc_count;
 mod disc_emit;
 mod disc_ranges;
 mod disc_trace;
 mod grid_trace;
 mod refine;
+mod scatter;
 mod shade;
+mod shadow_rays;
 mod surface_hit;
 
 pub(crate) use camera_rays::CameraRays;
+pub(crate) use classify::{Classify, ClassifyIo};
 pub(crate) use disc_count::DiscCount;
 pub(crate) use disc_emit::DiscEmit;
 pub(crate) use disc_ranges::DiscRanges;
 pub(crate) use disc_trace::{DiscTrace, DiscTraceIo};
 pub use grid_trace::Records;
-pub(crate) use grid_trace::{GridTrace, GridTraceIo};
+pub(crate) use grid_trace::{GridTrace, GridTraceIo, Start};
 pub(crate) use refine::{Refine, RefineIo};
+pub(crate) use scatter::{Scatter, ScatterIo};
 pub(crate) use shade::{Shade, ShadeIo};
+pub(crate) use shadow_rays::{ShadowRays, ShadowRaysIo};
 pub(crate) use surface_hit::{SurfaceHit, SurfaceHitIo};
 
 use crate::state::StateImages;
 use gpu::{Binding, PassBuilder};
 use kernels::layout::TILE_GROUP;
+use points::device::line;
 
 /// Pixels that a workgroup covers along each side (`tile_pixel` in `glsl/shared/index.glsl`).
 const TILE_EDGE: u32 = 8;

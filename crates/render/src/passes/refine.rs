@@ -1,6 +1,6 @@
 //! The passes `refine` and `resume`.
 
-use super::{Records, bind_state, over_pixels, state_bindings};
+use super::{Records, bind_state, line, state_bindings};
 use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
@@ -72,7 +72,7 @@ impl Refine {
             .buffer(REFINE_POINTS, &io.point_cells.points)
             .buffer(REFINE_OUTCOMES, &io.surfaces.outcome_buffer)
             .push(params)
-            .dispatch(over_pixels(params.tile_size));
+            .dispatch(line(params.ray_count));
     }
 
     /// Records the way on of rejected rays, in place.
@@ -89,6 +89,6 @@ impl Refine {
             .buffer(TRACE_INFO, &surfaces.grid_info)
             .buffer(TRACE_HITS, hits)
             .push(params)
-            .dispatch(over_pixels(params.tile_size));
+            .dispatch(line(params.ray_count));
     }
 }

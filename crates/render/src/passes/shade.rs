@@ -1,27 +1,30 @@
 //! The pass `shade`.
 
-use super::{bind_state, over_pixels, state_bindings};
+use super::{bind_state, line, state_bindings};
 use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_COLORS, SHADE_FILM, SHADE_LIGHTS, SHADE_OBJECTS, STATE_IN, ShadeParams, TRACE_HITS,
-    TRACE_POLYNOMIALS,
+    SHADE_COLORS, SHADE_FILM, SHADE_OBJECTS, STATE_IN, TRACE_POLYNOMIALS, WAVE_LIGHT_SUMS,
+    WAVE_LIT_RAYS, WAVE_PATHS, WaveParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
 
 /// What the pass works on.
+#[derive(Clone, Copy)]
 pub(crate) struct ShadeIo<'a> {
-    pub state: &'a StateImages,
+    /// The shadow rays, as those towards the last light left them.
+    pub shadows: &'a StateImages,
     pub polynomials: &'a Buffer,
-    pub hits: &'a Buffer,
     pub objects: &'a Buffer,
     pub colors: &'a Buffer,
-    pub lights: &'a Buffer,
     pub film: &'a Buffer,
+    pub paths: &'a Buffer,
+    pub lit_rays: &'a Buffer,
+    pub light_sums: &'a Buffer,
 }
 
-/// Lambert's law at the hit of each ray, the background where there is none (method, section 4).
+/// Lambert's law at the diffuse hits of a wave (method, section 4).
 pub(crate) struct Shade {
     kernel: Kernel,
 }
@@ -31,24 +34,32 @@ impl Shade {
 
     pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
         let mut bindings = state_bindings(STATE_IN).to_vec();
-        let buffers =
-            [TRACE_POLYNOMIALS, TRACE_HITS, SHADE_OBJECTS, SHADE_COLORS, SHADE_LIGHTS, SHADE_FILM];
+        let buffers = [
+            TRACE_POLYNOMIALS,
+            SHADE_OBJECTS,
+            SHADE_COLORS,
+            SHADE_FILM,
+            WAVE_PATHS,
+            WAVE_LIT_RAYS,
+            WAVE_LIGHT_SUMS,
+        ];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
-        let params = size_of::<ShadeParams>();
+        let params = size_of::<WaveParams>();
         let kernel = Kernel::new(device, Self::NAME, &spirv::shade(), &bindings, params)?;
         Ok(Self { kernel })
     }
 
-    /// Records the shading of a tile whose rays have all ended.
-    pub fn record(&self, rec: &mut Recorder, io: ShadeIo<'_>, params: &ShadeParams) {
-        bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, io.state)
+    /// Records the shading of a wave's diffuse hits, once every light has been asked.
+    pub fn record(&self, rec: &mut Recorder, io: ShadeIo<'_>, params: &WaveParams) {
+        bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, io.shadows)
             .buffer(TRACE_POLYNOMIALS, io.polynomials)
-            .buffer(TRACE_HITS, io.hits)
             .buffer(SHADE_OBJECTS, io.objects)
             .buffer(SHADE_COLORS, io.colors)
-            .buffer(SHADE_LIGHTS, io.lights)
             .buffer(SHADE_FILM, io.film)
+            .buffer(WAVE_PATHS, io.paths)
+            .buffer(WAVE_LIT_RAYS, io.lit_rays)
+            .buffer(WAVE_LIGHT_SUMS, io.light_sums)
             .push(params)
-            .dispatch(over_pixels(params.tile_size));
+            .dispatch(line(params.ray_count));
     }
 }

@@ -1,6 +1,6 @@
 //! The pass `surface_hit`.
 
-use super::{bind_state, over_pixels, state_bindings};
+use super::{bind_state, line, state_bindings};
 use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
@@ -58,6 +58,6 @@ impl SurfaceHit {
             .buffer(SHADE_OBJECTS, io.objects)
             .buffer(TRACE_HITS, io.hits)
             .push(params)
-            .dispatch(over_pixels(params.tile_size));
+            .dispatch(line(params.ray_count));
     }
 }

@@ -1,0 +1,143 @@
+//! Twin of `glsl/shared/media.glsl`: the objects that a ray is inside, and which of them counts
+//! (Schmidt and Budge, Simple Nested Dielectrics in Ray Traced Images, 2002).
+
+use crate::real::{Real, V3};
+use kernels::layout::{CHANNELS_ALL, MEDIA_WORDS, ObjectInfo};
+
+/// A ray inside more forgets the last that it entered.
+const MOST_MEDIA: usize = 2 * MEDIA_WORDS as usize;
+
+/// The glass objects that a ray is inside.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Media(Vec<u32>);
+
+/// A ray's way through the surface of a glass object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Crossing {
+    /// The medium that it comes from.
+    pub before: Option<u32>,
+    /// The one that it would go on in.
+    pub after: Option<u32>,
+}
+
+fn outranks(a: u32, b: u32, objects: &[ObjectInfo]) -> bool {
+    let rank = |object: u32| (objects[object as usize].priority, object);
+    rank(a) > rank(b)
+}
+
+impl Media {
+    /// Whether the ray is outside of everything.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The member of the highest priority, apart from `skipped`.
+    fn medium_without(&self, skipped: Option<u32>, objects: &[ObjectInfo]) -> Option<u32> {
+        let others = self.0.iter().copied().filter(|&member| Some(member) != skipped);
+        others.reduce(|best, member| if outranks(member, best, objects) { member } else { best })
+    }
+
+    /// The medium that the ray is in.
+    #[must_use]
+    pub fn medium(&self, objects: &[ObjectInfo]) -> Option<u32> {
+        self.medium_without(None, objects)
+    }
+
+    /// What entering or leaving an object means.
+    #[must_use]
+    pub fn crossing(&self, object: u32, objects: &[ObjectInfo]) -> Crossing {
+        let others = self.medium_without(Some(object), objects);
+        let rules = others.is_none_or(|other| outranks(object, other, objects));
+        let with = if rules { Some(object) } else { others };
+        if self.0.contains(&object) {
+            Crossing { before: with, after: others }
+        } else {
+            Crossing { before: others, after: with }
+        }
+    }
+
+    /// The same after the object is entered or left.
+    #[must_use]
+    pub fn toggled(&self, object: u32) -> Self {
+        let mut members = self.0.clone();
+        match members.iter().position(|&member| member == object) {
+            Some(place) => {
+                members.swap_remove(place);
+            }
+            None if members.len() < MOST_MEDIA => members.push(object),
+            None => {}
+        }
+        Self(members)
+    }
+}
+
+/// The refractive index of each channel.
+pub fn ior_of(medium: Option<u32>, objects: &[ObjectInfo]) -> [f32; 3] {
+    medium.map_or([1.0; 3], |object| objects[object as usize].ior)
+}
+
+impl Crossing {
+    /// Whether it leaves the medium as it is.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        self.before == self.after
+    }
+
+    /// Whether a ray becomes one a channel here.
+    #[must_use]
+    pub fn splits(&self, channels: u32, objects: &[ObjectInfo]) -> bool {
+        let disperses = |medium| {
+            let [red, green, blue] = ior_of(medium, objects);
+            red != green || green != blue
+        };
+        channels == CHANNELS_ALL && (disperses(self.before) || disperses(self.after))
+    }
+}
+
+/// What of the light comes through a way inside a medium.
+pub fn transmittance<R: Real>(medium: Option<u32>, way: R, objects: &[ObjectInfo]) -> V3<R> {
+    let absorption = medium.map_or([0.0; 3], |object| objects[object as usize].absorption);
+    V3(V3::of_f32(absorption).times(way).0.map(|depth| (-depth).exp_negative()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bytemuck::Zeroable;
+
+    fn objects(priorities: [i32; 3]) -> Vec<ObjectInfo> {
+        priorities.map(|priority| ObjectInfo { priority, ..ObjectInfo::zeroed() }).to_vec()
+    }
+
+    /// A ball (0) half under water (1): under water the ball's surface counts, and inside the ball the
+    /// water's does not.
+    #[test]
+    fn inside_the_object_of_higher_priority_others_are_passed_through() {
+        let objects = objects([5, 2, 0]);
+        let water = Media::default().toggled(1);
+        let crossing = water.crossing(0, &objects);
+        assert_eq!((crossing.before, crossing.after), (Some(1), Some(0)));
+        let both = water.toggled(0);
+        assert_eq!(both.medium(&objects), Some(0));
+        assert!(both.crossing(1, &objects).passes(), "the water's surface inside the ball");
+        let ball = both.toggled(1);
+        assert_eq!(ball.crossing(0, &objects), Crossing { before: Some(0), after: None });
+    }
+
+    #[test]
+    fn equal_priorities_go_to_the_last_in_the_scene() {
+        let objects = objects([0, 0, 0]);
+        let media = Media::default().toggled(2).toggled(0);
+        assert_eq!(media.medium(&objects), Some(2));
+        assert!(media.crossing(1, &objects).passes());
+        assert_eq!(media.toggled(2).crossing(1, &objects).after, Some(1));
+    }
+
+    #[test]
+    fn the_set_never_grows_beyond_its_words() {
+        let full = (0..20).fold(Media::default(), |media, object| media.toggled(object));
+        assert_eq!(full.0.len(), MOST_MEDIA);
+        assert_eq!(full.toggled(3).0.len(), MOST_MEDIA - 1);
+    }
+}

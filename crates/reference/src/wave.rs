@@ -1,0 +1,211 @@
+//! Twin of `classify`, `shadow_rays`, `shade` and `scatter`: what becomes of the rays of one pixel.
+//!
+//! The device goes wave by wave, with all rays of one generation at once; the twin follows one path
+//! after the other. No ray of a pixel depends on another, so both give the same bits.
+
+use crate::Reference;
+use crate::camera_rays::Ray;
+use crate::disc_bin::DiscLists;
+use crate::disc_trace::disc_trace;
+use crate::grid::Grid;
+use crate::grid_trace::grid_trace;
+use crate::media::{Media, ior_of, transmittance};
+use crate::optics::{reflected, refraction};
+use crate::real::{NO_HIT, Real, V3};
+use crate::shade::{lambert, point_color, shadow_ray};
+use crate::surface_hit::Hit;
+use kernels::layout::{
+    CHANNELS_ALL, FilmPixel, MATERIAL_DIFFUSE, MATERIAL_GLASS, MOST_CROSSINGS, WaveParams,
+};
+use plan::{Plan, Rays};
+
+/// What a ray has behind it (`Path` in `glsl/shared/layout.glsl`).
+#[derive(Debug, Clone)]
+struct Path<R> {
+    throughput: V3<R>,
+    channels: u32,
+    bounces: u32,
+    crossings: u32,
+    media: Media,
+}
+
+/// One pixel while its rays are followed.
+pub(crate) struct PixelTrace<'a, R> {
+    pub reference: &'a Reference<R>,
+    pub plan: &'a Plan,
+    pub grid: &'a Grid<R>,
+    pub params: &'a WaveParams,
+    pub film: FilmPixel,
+    pub rays: Rays,
+}
+
+impl<R: Real> PixelTrace<'_, R> {
+    /// Follows a camera ray and all that come of it. By discs where they are given, with the pixel's
+    /// place in the full image.
+    pub fn run(&mut self, ray: Ray<R>, discs: Option<(&DiscLists, [u32; 2])>) {
+        let path = Path {
+            throughput: V3::splat(R::of(1.0)),
+            channels: CHANNELS_ALL,
+            bounces: 0,
+            crossings: 0,
+            media: Media::default(),
+        };
+        let mut rays = vec![(ray, path)];
+        let mut discs = discs;
+        let mut from_camera = true;
+        while let Some((mut ray, path)) = rays.pop() {
+            match discs.take() {
+                Some((lists, pixel)) => {
+                    disc_trace(&mut ray, pixel, lists, &self.reference.polynomials);
+                }
+                None => self.trace(&mut ray, false),
+            }
+            let (hit, iterations) = self.reference.settle(self.plan, self.grid, &mut ray);
+            self.account(&ray, hit.as_ref(), iterations, from_camera);
+            self.interact(&ray, hit, path, from_camera, &mut rays);
+            from_camera = false;
+        }
+    }
+
+    fn trace(&self, ray: &mut Ray<R>, any_hit: bool) {
+        let Reference { lists, polynomials, .. } = self.reference;
+        grid_trace(ray, self.grid, lists, polynomials, any_hit);
+    }
+
+    /// Counts, and what the first surface is.
+    fn account(&mut self, ray: &Ray<R>, hit: Option<&(Hit<R>, u32)>, iterations: u32, first: bool) {
+        let film = &mut self.film;
+        film.counts[0] = film.counts[0].wrapping_add(ray.tests);
+        film.counts[1] = film.counts[1].wrapping_add(ray.cells);
+        if !first {
+            return;
+        }
+        film.counts[2] = ray.hit_slot;
+        film.counts[3] = iterations;
+        film.position_depth = [0.0, 0.0, 0.0, f32::INFINITY];
+        film.normal_object = [0.0, 0.0, 0.0, -1.0];
+        if let Some((hit, object)) = hit {
+            let depth = hit.t * ray.direction.dot(V3::of_f32(self.params.forward));
+            let ([x, y, z], [nx, ny, nz]) = (hit.position.to_f32(), hit.normal.to_f32());
+            film.position_depth = [x, y, z, depth.to_f32()];
+            film.normal_object = [nx, ny, nz, *object as f32];
+            film.color[3] = 1.0;
+        }
+    }
+
+    fn write(&mut self, channels: u32, radiance: V3<R>) {
+        for (channel, value) in radiance.to_f32().into_iter().enumerate() {
+            if channels >> channel & 1 != 0 {
+                self.film.color[channel] = value;
+            }
+        }
+    }
+
+    /// `classify`, and then what the ray's kind of surface asks for.
+    fn interact(
+        &mut self,
+        ray: &Ray<R>,
+        hit: Option<(Hit<R>, u32)>,
+        mut path: Path<R>,
+        from_camera: bool,
+        rays: &mut Vec<(Ray<R>, Path<R>)>,
+    ) {
+        let objects = &self.plan.objects;
+        if !path.media.is_empty() {
+            let way = hit.as_ref().map_or(R::of(NO_HIT), |(hit, _)| hit.t);
+            path.throughput =
+                path.throughput * transmittance(path.media.medium(objects), way, objects);
+        }
+        let Some((hit, object)) = hit else {
+            if !(from_camera && self.params.transparent != 0) {
+                self.write(path.channels, path.throughput * self.background());
+            }
+            return;
+        };
+        if objects[object as usize].material == MATERIAL_DIFFUSE {
+            let radiance = self.shade(&hit, object, ray.hit_slot);
+            self.write(path.channels, path.throughput * radiance);
+        } else {
+            self.scatter(ray, &hit, object, &path, rays);
+        }
+    }
+
+    fn background(&self) -> V3<R> {
+        V3::of_f32(self.params.background)
+    }
+
+    fn shade(&mut self, hit: &Hit<R>, object: u32, slot: u32) -> V3<R> {
+        let mut irradiance = V3::splat(R::of(0.0));
+        for light in self.plan.lights.iter().take(self.params.light_count as usize) {
+            let Some((mut ray, arriving)) = shadow_ray(light, hit, slot, self.grid) else {
+                continue;
+            };
+            self.rays.shadow += 1;
+            self.trace(&mut ray, true);
+            self.account(&ray, None, 0, false);
+            if ray.hit_slot == kernels::layout::NONE {
+                irradiance = irradiance + arriving;
+            }
+        }
+        let object = &self.plan.objects[object as usize];
+        lambert(point_color(object, slot, &self.plan.colors), irradiance)
+    }
+
+    fn scatter(
+        &mut self,
+        ray: &Ray<R>,
+        hit: &Hit<R>,
+        object: u32,
+        path: &Path<R>,
+        rays: &mut Vec<(Ray<R>, Path<R>)>,
+    ) {
+        let objects = &self.plan.objects;
+        let info = &objects[object as usize];
+        let (d, n) = (ray.direction, hit.normal);
+        let crossing =
+            (info.material == MATERIAL_GLASS).then(|| path.media.crossing(object, objects));
+        let passes = crossing.is_some_and(|crossing| crossing.passes());
+        let splits = crossing.is_some_and(|crossing| crossing.splits(path.channels, objects));
+        let goes_on = if passes {
+            path.crossings < MOST_CROSSINGS
+        } else {
+            path.bounces < self.params.max_bounces
+        };
+        let throughput = match crossing {
+            Some(_) => path.throughput,
+            None => path.throughput * V3::of_f32(info.albedo),
+        };
+        // The stack gives back the last first: the channels come in order.
+        for i in (0..if splits { 3 } else { 1 }).rev() {
+            let channels = if splits { 1 << i } else { path.channels };
+            let (reflects, direction) = match crossing {
+                None => (true, reflected(d, n)),
+                Some(_) if passes => (false, d),
+                Some(crossing) => {
+                    let channel = channels.trailing_zeros() as usize;
+                    let [n1, n2] = [crossing.before, crossing.after]
+                        .map(|medium| R::of_f32(ior_of(medium, objects)[channel]));
+                    let bent = refraction(d, n, n1, n2);
+                    (bent.total, bent.direction)
+                }
+            };
+            if !goes_on {
+                self.write(channels, throughput * self.background());
+                continue;
+            }
+            if reflects {
+                self.rays.reflected += 1;
+            } else {
+                self.rays.refracted += 1;
+            }
+            let next = Path {
+                throughput,
+                channels,
+                bounces: path.bounces + u32::from(!passes),
+                crossings: path.crossings + u32::from(passes),
+                media: if reflects { path.media.clone() } else { path.media.toggled(object) },
+            };
+            rays.push((Ray::new(hit.position, direction, self.grid, ray.hit_slot), next));
+        }
+    }
+}

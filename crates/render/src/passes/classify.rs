@@ -1,0 +1,84 @@
+//! The passes `classify` and `list_lit`.
+
+use super::{bind_state, line, state_bindings};
+use crate::state::StateImages;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use kernels::layout::{
+    SHADE_FILM, SHADE_OBJECTS, STATE_IN, TRACE_HITS, TRACE_POLYNOMIALS, WAVE_LIT, WAVE_LIT_RAYS,
+    WAVE_NEXT, WAVE_PATHS, WaveParams,
+};
+use kernels::spirv;
+use std::sync::Arc;
+
+/// What the passes work on.
+#[derive(Clone, Copy)]
+pub(crate) struct ClassifyIo<'a> {
+    pub state: &'a StateImages,
+    pub polynomials: &'a Buffer,
+    pub hits: &'a Buffer,
+    pub objects: &'a Buffer,
+    pub film: &'a Buffer,
+    pub paths: &'a Buffer,
+    /// One u32 a ray: whether it hit a diffuse surface; then the offset of such rays in a list.
+    pub lit: &'a Buffer,
+    /// One u32 a ray: rays of the next wave that it makes.
+    pub next: &'a Buffer,
+    /// Two u32 a ray: the rays that hit a diffuse surface, and the points hit.
+    pub lit_rays: &'a Buffer,
+}
+
+/// What becomes of each ray of a wave that has met a surface, or nothing (\[T\] §5).
+pub(crate) struct Classify {
+    classify: Kernel,
+    list_lit: Kernel,
+}
+
+impl Classify {
+    pub const NAME: &'static str = "classify";
+    pub const LIST_LIT: &'static str = "list_lit";
+
+    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+        let params = size_of::<WaveParams>();
+        let kernel = |name, module: &[u32], buffers: &[u32]| {
+            let mut bindings = state_bindings(STATE_IN).to_vec();
+            bindings.extend(buffers.iter().map(|&binding| (binding, Binding::StorageBuffer)));
+            Kernel::new(device, name, module, &bindings, params)
+        };
+        let buffers = [
+            TRACE_POLYNOMIALS,
+            TRACE_HITS,
+            SHADE_OBJECTS,
+            SHADE_FILM,
+            WAVE_PATHS,
+            WAVE_LIT,
+            WAVE_NEXT,
+        ];
+        Ok(Self {
+            classify: kernel(Self::NAME, &spirv::classify(), &buffers)?,
+            list_lit: kernel(Self::LIST_LIT, &spirv::list_lit(), &[WAVE_LIT, WAVE_LIT_RAYS])?,
+        })
+    }
+
+    /// Records the classes of a wave whose rays have all ended.
+    pub fn record(&self, rec: &mut Recorder, io: ClassifyIo<'_>, params: &WaveParams) {
+        bind_state(rec.pass(Self::NAME, &self.classify), STATE_IN, io.state)
+            .buffer(TRACE_POLYNOMIALS, io.polynomials)
+            .buffer(TRACE_HITS, io.hits)
+            .buffer(SHADE_OBJECTS, io.objects)
+            .buffer(SHADE_FILM, io.film)
+            .buffer(WAVE_PATHS, io.paths)
+            .buffer(WAVE_LIT, io.lit)
+            .buffer(WAVE_NEXT, io.next)
+            .push(params)
+            .dispatch(line(params.ray_count));
+    }
+
+    /// Records the list of rays that hit a diffuse surface; `lit` holds offsets by now.
+    pub fn record_list(&self, rec: &mut Recorder, io: ClassifyIo<'_>, params: &WaveParams) {
+        bind_state(rec.pass(Self::LIST_LIT, &self.list_lit), STATE_IN, io.state)
+            .buffer(WAVE_LIT, io.lit)
+            .buffer(WAVE_LIT_RAYS, io.lit_rays)
+            .push(params)
+            .dispatch(line(params.ray_count));
+    }
+}

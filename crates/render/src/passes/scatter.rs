@@ -1,0 +1,74 @@
+//! The pass `scatter`.
+
+use super::{bind_state, line, state_bindings};
+use crate::state::RayState;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use kernels::layout::{
+    SHADE_FILM, SHADE_OBJECTS, STATE_IN, STATE_OUT, TRACE_HITS, TRACE_INFO, TRACE_POLYNOMIALS,
+    WAVE_NEXT, WAVE_NEXT_PATHS, WAVE_PATHS, WAVE_TALLY, WaveParams,
+};
+use kernels::spirv;
+use points::device::Surfaces;
+use std::sync::Arc;
+
+/// What the pass works on.
+#[derive(Clone, Copy)]
+pub(crate) struct ScatterIo<'a> {
+    /// This wave, and the next.
+    pub state: &'a RayState,
+    pub surfaces: &'a Surfaces,
+    pub hits: &'a Buffer,
+    pub objects: &'a Buffer,
+    pub film: &'a Buffer,
+    pub paths: &'a Buffer,
+    pub next_paths: &'a Buffer,
+    /// Offsets of each ray's rays in the next wave, and one behind the last.
+    pub next: &'a Buffer,
+    pub tally: &'a Buffer,
+}
+
+/// The reflected and refracted rays that a wave makes (\[T\] §5).
+pub(crate) struct Scatter {
+    kernel: Kernel,
+}
+
+impl Scatter {
+    pub const NAME: &'static str = "scatter";
+
+    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+        let mut bindings = state_bindings(STATE_IN).to_vec();
+        bindings.extend(state_bindings(STATE_OUT));
+        let buffers = [
+            TRACE_INFO,
+            TRACE_POLYNOMIALS,
+            TRACE_HITS,
+            SHADE_OBJECTS,
+            SHADE_FILM,
+            WAVE_PATHS,
+            WAVE_NEXT_PATHS,
+            WAVE_NEXT,
+            WAVE_TALLY,
+        ];
+        bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        let params = size_of::<WaveParams>();
+        let kernel = Kernel::new(device, Self::NAME, &spirv::scatter(), &bindings, params)?;
+        Ok(Self { kernel })
+    }
+
+    /// Records the next wave; the caller then swaps ray state and paths.
+    pub fn record(&self, rec: &mut Recorder, io: ScatterIo<'_>, params: &WaveParams) {
+        let pass = bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, &io.state.current);
+        bind_state(pass, STATE_OUT, &io.state.next)
+            .buffer(TRACE_INFO, &io.surfaces.grid_info)
+            .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
+            .buffer(TRACE_HITS, io.hits)
+            .buffer(SHADE_OBJECTS, io.objects)
+            .buffer(SHADE_FILM, io.film)
+            .buffer(WAVE_PATHS, io.paths)
+            .buffer(WAVE_NEXT_PATHS, io.next_paths)
+            .buffer(WAVE_NEXT, io.next)
+            .buffer(WAVE_TALLY, io.tally)
+            .push(params)
+            .dispatch(line(params.ray_count));
+    }
+}

@@ -1,0 +1,71 @@
+//! The pass `shadow_rays`.
+
+use super::{bind_state, line, state_bindings};
+use crate::state::RayState;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use kernels::layout::{
+    SHADE_FILM, SHADE_LIGHTS, STATE_IN, STATE_OUT, TRACE_HITS, TRACE_INFO, WAVE_LIGHT_SUMS,
+    WAVE_LIT_RAYS, WAVE_PATHS, WAVE_TALLY, WaveParams,
+};
+use kernels::spirv;
+use std::sync::Arc;
+
+/// What the pass works on.
+#[derive(Clone, Copy)]
+pub(crate) struct ShadowRaysIo<'a> {
+    /// The shadow rays: as those towards the light before left it, and for those towards this one.
+    pub shadows: &'a RayState,
+    pub grid_info: &'a Buffer,
+    pub hits: &'a Buffer,
+    pub lights: &'a Buffer,
+    pub film: &'a Buffer,
+    pub paths: &'a Buffer,
+    pub lit_rays: &'a Buffer,
+    /// One `LightSum` a diffuse hit.
+    pub light_sums: &'a Buffer,
+    pub tally: &'a Buffer,
+}
+
+/// The rays from the diffuse hits of a wave towards one light (\[T\] §5).
+pub(crate) struct ShadowRays {
+    kernel: Kernel,
+}
+
+impl ShadowRays {
+    pub const NAME: &'static str = "shadow_rays";
+
+    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+        let mut bindings = state_bindings(STATE_IN).to_vec();
+        bindings.extend(state_bindings(STATE_OUT));
+        let buffers = [
+            TRACE_INFO,
+            TRACE_HITS,
+            SHADE_LIGHTS,
+            SHADE_FILM,
+            WAVE_PATHS,
+            WAVE_LIT_RAYS,
+            WAVE_LIGHT_SUMS,
+            WAVE_TALLY,
+        ];
+        bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        let params = size_of::<WaveParams>();
+        let kernel = Kernel::new(device, Self::NAME, &spirv::shadow_rays(), &bindings, params)?;
+        Ok(Self { kernel })
+    }
+
+    /// Records the rays towards one light; the caller then swaps their state.
+    pub fn record(&self, rec: &mut Recorder, io: ShadowRaysIo<'_>, params: &WaveParams) {
+        let pass = bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, &io.shadows.current);
+        bind_state(pass, STATE_OUT, &io.shadows.next)
+            .buffer(TRACE_INFO, io.grid_info)
+            .buffer(TRACE_HITS, io.hits)
+            .buffer(SHADE_LIGHTS, io.lights)
+            .buffer(SHADE_FILM, io.film)
+            .buffer(WAVE_PATHS, io.paths)
+            .buffer(WAVE_LIT_RAYS, io.lit_rays)
+            .buffer(WAVE_LIGHT_SUMS, io.light_sums)
+            .buffer(WAVE_TALLY, io.tally)
+            .push(params)
+            .dispatch(line(params.ray_count));
+    }
+}

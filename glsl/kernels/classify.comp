@@ -1,0 +1,79 @@
+// classify: what becomes of each ray of a wave that has met a surface, or nothing (section 5 of the
+// paper).
+//
+// reads   the ray state, objects, polynomials
+//         hits             accepted, or none
+// writes  paths            absorption on the way is taken from their throughput
+//         film             every pixel in the first wave; after that, the background where a ray ends
+//         lit              1 for a ray that hit a diffuse surface
+//         next             how many rays of the next wave this one makes
+// runs    one invocation per ray of the wave
+// twin    crates/reference/src/wave.rs
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define STATE_READS
+#include "layout.glsl"
+#include "math.glsl"
+#include "state.glsl"
+#include "index.glsl"
+
+layout(local_size_x = LINE_GROUP) in;
+layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
+layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
+layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
+layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
+layout(std430, binding = WAVE_PATHS) buffer Paths { Path paths[]; };
+layout(std430, binding = WAVE_LIT) writeonly buffer Lit { uint lit[]; };
+layout(std430, binding = WAVE_NEXT) writeonly buffer Next { uint next[]; };
+layout(push_constant) uniform Push { WaveParams params; };
+#include "media.glsl"
+#include "film.glsl"
+
+#define INFINITE_DEPTH uintBitsToFloat(0x7f800000u)
+
+// Rays that a ray makes at a surface that is not diffuse.
+uint rays_behind(uint ray, uint object) {
+    bool spent = paths[ray].bounces >= params.max_bounces;
+    if (objects[object].material != MATERIAL_GLASS) return spent ? 0u : 1u;
+    Crossing crossing = crossing_of(ray, object);
+    bool passes = crossing.before == crossing.after;
+    uint count = splits(crossing, paths[ray].channels) ? 3u : 1u;
+    return passes ? (paths[ray].crossings < MOST_CROSSINGS ? 1u : 0u) : (spent ? 0u : count);
+}
+
+void main() {
+    uint at = list_index();
+    if (at >= params.ray_count) return;
+    uint pixel = paths[at].pixel;
+    if (pixel == NONE) {
+        lit[at] = 0u;
+        next[at] = 0u;
+        return;
+    }
+    Ray ray = load_ray(at);
+    Hit hit = hits[at];
+    bool found = ray.hit_slot != NONE;
+    uint object = found ? polynomials[ray.hit_slot].object : NONE;
+    vec3 throughput = paths[at].throughput;
+    if (paths[at].media_count > 0u) {
+        throughput *= transmittance(medium_without(at, NONE), found ? hit.t : NO_HIT);
+        paths[at].throughput = throughput;
+    }
+    bool is_diffuse = found && objects[object].material == MATERIAL_DIFFUSE;
+    lit[at] = is_diffuse ? 1u : 0u;
+    next[at] = found && !is_diffuse ? rays_behind(at, object) : 0u;
+
+    bool from_camera = params.wave == 0u;
+    bool left_out = from_camera && params.transparent != 0u;
+    vec3 behind = found || left_out ? vec3(0.0) : throughput * params.background;
+    if (from_camera) {
+        float depth = hit.t * dot3(ray.direction, params.forward);
+        uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, hit.status >> HIT_TOTAL_SHIFT);
+        film[pixel] = FilmPixel(vec4(behind, found ? 1.0 : 0.0),
+                                found ? vec4(hit.position, depth) : vec4(0.0, 0.0, 0.0, INFINITE_DEPTH),
+                                found ? vec4(hit.normal, float(object)) : vec4(0.0, 0.0, 0.0, -1.0), counts);
+    } else {
+        count_work(pixel, ray.tests, ray.cells);
+        if (!found) write_channels(pixel, paths[at].channels, behind);
+    }
+}

@@ -1,0 +1,53 @@
+// shadow_rays: the rays from the diffuse hits of a wave towards one light (section 5 of the paper).
+//
+// reads   the shadow rays' state      as the rays towards the light before this one left it
+//         hits, lights, grid
+//         lit_rays         the rays that hit a diffuse surface
+// writes  the shadow rays' state      towards this light; none where it lies behind the surface
+//         light_sums       what the lights before this one bring, and what this one would
+//         film             counts
+//         tally            shadow rays
+// runs    one invocation per diffuse hit
+// twin    crates/reference/src/shadow_rays.rs
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define STATE_READS
+#define STATE_WRITES
+#include "layout.glsl"
+#include "math.glsl"
+#include "grid.glsl"
+#include "light.glsl"
+#include "state.glsl"
+#include "index.glsl"
+
+layout(local_size_x = LINE_GROUP) in;
+layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
+layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
+layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
+layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
+layout(std430, binding = WAVE_PATHS) readonly buffer Paths { Path paths[]; };
+layout(std430, binding = WAVE_LIT_RAYS) readonly buffer LitRays { uvec2 lit_rays[]; };
+layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
+layout(std430, binding = WAVE_TALLY) buffer Tally { uint shadow_count; uint reflected_count; uint refracted_count; };
+layout(push_constant) uniform Push { WaveParams params; };
+#include "film.glsl"
+#include "gather.glsl"
+
+void main() {
+    uint at = list_index();
+    if (at >= params.ray_count) return;
+    uint ray = lit_rays[at].x;
+    Hit hit = hits[ray];
+    vec3 sum = params.light > 0u ? gathered(at, paths[ray].pixel) : vec3(0.0);
+    LightSample light = sample_light(lights[params.light], hit.position, vec2(0.5));
+    vec3 arriving = light.arriving * max(dot3(hit.normal, light.towards), 0.0);
+    bool arrives = any(greaterThan(arriving, vec3(0.0)));
+    light_sums[at] = LightSum(sum, 0u, arriving, 0u);
+    Ray shadow = no_ray();
+    if (arrives) {
+        shadow = new_ray(hit.position, light.towards, enter_grid(grid, hit.position, light.towards), lit_rays[at].y);
+        shadow.hit_t = light.distance;
+        atomicAdd(shadow_count, 1u);
+    }
+    store_ray(at, shadow);
+}

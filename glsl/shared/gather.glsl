@@ -1,0 +1,17 @@
+// gather: what a light brings, once the shadow rays towards it have ended.
+//
+// twin  crates/reference/src/shadow_rays.rs
+// Whoever includes this has buffers `light_sums` and `film`, and reads the shadow rays' state.
+#ifndef GATHER_GLSL
+#define GATHER_GLSL
+#include "layout.glsl"
+#include "state.glsl"
+
+// The lights' sum at a diffuse hit with the last light that was asked.
+vec3 gathered(uint at, uint pixel) {
+    Ray shadow = load_ray(at);
+    count_work(pixel, shadow.tests, shadow.cells);
+    bool blocked = shadow.hit_slot != NONE;
+    return light_sums[at].sum + (blocked ? vec3(0.0) : light_sums[at].arriving);
+}
+#endif
