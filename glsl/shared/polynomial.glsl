@@ -29,7 +29,7 @@ vec3 normal_at(Polynomial p, vec3 x) {
 }
 
 #define SHEET_REACH 0.5   // of the trust radius: how far a ray may still meet the sheet it starts on
-#define SHEET_HEIGHT 0.05 // of the trust radius: how far apart polynomials of one sheet may be
+#define SHEET_HEIGHT 0.3 // of the trust radius: how far apart polynomials of one sheet may be
 #define SHEET_COSINE 0.5  // of the angle between their normals, 60 degrees
 
 // Whether p is the sheet that a ray starts on at o, where its normal is `normal` (method, section 4).

@@ -5,7 +5,7 @@ use kernels::layout;
 
 /// Of the trust radius: how far a ray may still meet the sheet that it starts on.
 pub const SHEET_REACH: f64 = 0.5;
-const SHEET_HEIGHT: f64 = 0.05;
+const SHEET_HEIGHT: f64 = 0.3;
 const SHEET_COSINE: f64 = 0.5;
 
 /// The surface near one point, in world form: with y = x − center,
