@@ -29,6 +29,11 @@
 #define FIT_POLYNOMIALS 2
 #define FIT_OUTCOMES 3
 #define FIT_SIZES 4
+#define FIT_RIMS 5
+
+// clip_balls
+#define CLIP_CLIPS 0
+#define CLIP_POLYNOMIALS 1
 
 // grid_count, grid_emit, grid_ranges
 #define GRID_INFO 0
@@ -122,7 +127,25 @@ struct FitOutcome {      // 12 bytes
     float feature_size;  // 8  h
 };
 
-struct FitParams {       // 40 bytes
+// What a point's neighbours say about a rim of the set.
+struct Rim {             // 20 bytes
+    float outward[3];    //  0  unit, in the tangent plane; 0 where the cell is not open
+    float reach;         // 12  along it: from the point to where the surface ends
+    float openness;      // 16  reach of the Voronoi cell over that of the neighbours
+};
+
+// A trust ball that ends at a rim.
+struct BallClip {        // 20 bytes
+    uint slot;           //  0
+    float trust;         //  4  its radius
+    float shift[3];      //  8  from the point to its centre
+};
+
+struct ClipParams {      // 4 bytes
+    uint count;          // 0
+};
+
+struct FitParams {       // 44 bytes
     uint first_slot;     //  0  of this batch
     uint point_count;    //  4  in this batch
     uint neighbors;      //  8  entries a point in the list of neighbours
@@ -133,6 +156,7 @@ struct FitParams {       // 40 bytes
     uint first_listed;   // 28  slot whose neighbours come first in the list
     float weight_scale;  // 32  h over the width of the weights
     uint close_gaps;     // 36  1: b grows, at most to h, where neighbours leave a gap
+    float rim_limit;     // 40  of the distance to the centroid, over the neighbours' reach; 0: no rims
 };
 
 struct GridInfo {        // 32 bytes

@@ -28,6 +28,8 @@ modules! {
     camera_rays,
     /// Where each cell's entries begin.
     cell_offsets,
+    /// Trust balls that end at rims.
+    clip_balls,
     /// Screen tiles that each disc covers.
     disc_count,
     /// Pairs of screen tile and point.
