@@ -113,7 +113,7 @@ struct ListedPoint {     // 16 bytes
 // The surface near one point: with y = x - center,
 // dot(gradient, y) - offset - y' M y = 0 where |y| <= trust (method, section 1, step 3).
 struct Polynomial {       // 64 bytes
-    vec4 center_trust;    //  0  p, and b; b = 0: the point carries no surface
+    vec4 center_trust;    //  0  p, and b; b = 0: the point carries no surface; at a rim, a ball inside that one
     vec4 gradient_offset; // 16  m = n - E u - F v, and D
     vec4 curvature;       // 32  M: xx, yy, zz, xy
     vec2 cross_terms;     // 48  M: xz, yz

@@ -212,7 +212,8 @@ gpu_layout!(ListedPoint, 16, { position: 0, slot: 12 });
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Polynomial {
-    /// p, and the trust radius b; b = 0 where the point carries no surface.
+    /// p, and the trust radius b; b = 0 where the point carries no surface. At a rim, centre and radius
+    /// of a ball inside that one.
     pub center_trust: [f32; 4],
     /// m = n − E u − F v, and D.
     pub gradient_offset: [f32; 4],
