@@ -55,6 +55,9 @@ struct Ends {
     holes: f64,
 }
 
+/// The pixel at a place along a side and a depth from it, of a square picture of this size.
+type Turn = fn(usize, usize, usize) -> (usize, usize);
+
 fn ends_of_square(film: &Film, count: usize) -> Ends {
     let spacing = SIDE / (count as f64).sqrt();
     let size = film.window.width as usize;
@@ -62,7 +65,7 @@ fn ends_of_square(film: &Film, count: usize) -> Ends {
     let middle = first + size / 10..size - first - size / 10;
     let mut beyond = Vec::new();
     let mut steps = Vec::new();
-    let turned: [fn(usize, usize, usize) -> (usize, usize); 4] = [
+    let turned: [Turn; 4] = [
         |across, depth, _| (across, depth),
         |across, depth, size| (across, size - 1 - depth),
         |across, depth, _| (depth, across),

@@ -413,7 +413,7 @@ pub(crate) static SURFACE: Table = Table {
             Kind::Bool,
             Value("true"),
             "End the surface of an open set near its last points, about half their spacing beyond, not \
-             a trust radius. Closed sets are not changed.",
+             a trust radius. Even closed sets are not changed.",
         ),
         key(
             "normals",
