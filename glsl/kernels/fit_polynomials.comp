@@ -5,6 +5,7 @@
 //         neighbors        per point of the batch, nearest first, slots; NONE fills up
 // writes  polynomials      one a point, in world form
 //         outcomes         how each fit ended
+//         rims             of the batch's points, where params.rim_limit asks for them
 // runs    one invocation per point of the batch
 // twin    crates/reference/src/fit_polynomials.rs
 //
@@ -17,6 +18,7 @@
 #include "eigen.glsl"
 #include "fit.glsl"
 #include "gap.glsl"
+#include "rim.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
@@ -25,6 +27,7 @@ layout(std430, binding = FIT_NEIGHBORS) readonly buffer Neighbors { uint neighbo
 layout(std430, binding = FIT_POLYNOMIALS) writeonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = FIT_OUTCOMES) writeonly buffer Outcomes { FitOutcome outcomes[]; };
 layout(std430, binding = FIT_SIZES) readonly buffer Sizes { float sizes[]; };
+layout(std430, binding = FIT_RIMS) writeonly buffer Rims { Rim rims[]; };
 layout(push_constant) uniform Push { FitParams params; };
 
 #define SMALLEST_FEATURE 1e-15   // h under this: every neighbour lies on the point
@@ -49,6 +52,17 @@ uint count_distinct(uint list, uint count, vec3 center) {
         ++j;
     }
     return distinct;
+}
+
+// How far along e, in units of the reach of the neighbours, the surface goes on; no steps: not asked.
+float reach_of_rim(uint list, uint count, vec3 center, float inverse_reach, vec3 e, uint steps) {
+    float s = 0.0;
+    for (uint i = 0u; i < steps; ++i) {
+        Centroid c = centroid_at(s);
+        for (uint j = 0u; j < count; ++j) add_neighbor(c, neighbor_offset(list, j, center) * inverse_reach, e, s);
+        s = step_to_rim(c, s, params.rim_limit);
+    }
+    return max(s, RIM_LEAST);
 }
 
 void main() {
@@ -106,7 +120,9 @@ void main() {
     float c[6];
     uint kind = fit_coefficients(eq, spread_out && spans_plane ? params.polynomial : FIT_NO_SURFACE, distinct, c);
     float reach_needed = 0.0;
-    if (params.close_gaps != 0u && kind != FIT_NO_SURFACE) {
+    float openness = 0.0;
+    bool finds_rims = params.rim_limit > 0.0;
+    if ((params.close_gaps != 0u || finds_rims) && kind != FIT_NO_SURFACE) {
         vec4 e0 = vec4(UNBOUNDED), e1 = e0, e2 = e0, e3 = e0, e4 = e0, e5 = e0;
         for (uint j = 0u; j < count; ++j) {
             vec3 y = neighbor_offset(list, j, center) * inverse_h;
@@ -127,11 +143,23 @@ void main() {
         float f5 = extent_of_cell(e5, GAP_COSINES[5], GAP_SINES[5], c);
         bool closed = bounded(e0) && bounded(e1) && bounded(e2) && bounded(e3) && bounded(e4) && bounded(e5);
         float square = max(max(max(f0, f1), max(f2, f3)), max(f4, f5));
-        reach_needed = closed ? GAP_MARGIN * sqrt(square) : 0.0;
+        reach_needed = closed && params.close_gaps != 0u ? GAP_MARGIN * sqrt(square) : 0.0;
+        float extent = max(max(max(farthest_of(e0), farthest_of(e1)), max(farthest_of(e2), farthest_of(e3))),
+                           max(farthest_of(e4), farthest_of(e5)));
+        openness = extent * (h / reach);
     }
     float ratio = max(params.trust, min(reach_needed, 1.0));
     float trust = kind != FIT_NO_SURFACE ? ratio * h : 0.0;
     polynomials[slot] =
         to_world(center, trust, h, inverse_h, n, u, v, c, params.object, points[slot].index);
     outcomes[slot] = FitOutcome(trust, kind, h);
+
+    float mean_u = dot3(mean, u), mean_v = dot3(mean, v);
+    float away = sqrt(mean_u * mean_u + mean_v * mean_v);
+    bool open = finds_rims && openness > RIM_OPEN && away > RIM_SHORTEST;
+    vec3 outward = open ? -((mean_u * u + mean_v * v) / away) : vec3(0.0);
+    float inverse_reach = 1.0 / (open ? reach : 1.0);
+    float s = reach_of_rim(list, count, center, inverse_reach, outward, open ? RIM_STEPS : 0u);
+    if (finds_rims)
+        rims[i] = Rim(float[3](outward.x, outward.y, outward.z), open ? s * reach : 0.0, open ? openness : 0.0);
 }

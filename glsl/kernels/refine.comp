@@ -87,11 +87,12 @@ bool belongs(uint slot, uvec2 slots) {
     return slot - slots.x < slots.y;
 }
 
-// The object's point nearest to x; the stored one is near (ties: the lower index).
-uint nearest_slot(Rows rows, vec3 x, uint stored, uvec2 slots) {
+// The object's point nearest to x; the stored one is near (ties: the lower index), and in the list if
+// its ball was clipped, so that its centre lies elsewhere.
+uint nearest_slot(Rows rows, vec3 x, uint stored, bool clipped, uvec2 slots) {
     uint best = stored;
     vec3 to_stored = polynomials[stored].center_trust.xyz - x;
-    float best_square = dot3(to_stored, to_stored);
+    float best_square = clipped ? NO_HIT : dot3(to_stored, to_stored);
     for (uint row = 0u; row < rows.count; ++row) {
         uvec2 range = row_range(rows, row);
         for (uint i = range.x; i < range.y; ++i) {
@@ -190,8 +191,9 @@ void main() {
     uvec2 slots = uvec2(objects[object].first_slot, objects[object].slot_count);
     vec3 from_stored = hit.position - stored.xyz;
 
-    Rows near = rows_around(hit.position, sqrt(dot3(from_stored, from_stored)));
-    FitOutcome nearest = outcomes[nearest_slot(near, hit.position, ray.hit_slot, slots)];
+    float moved = outcomes[ray.hit_slot].trust - stored.w; // > 0 where the ball was clipped: from point to centre
+    Rows near = rows_around(hit.position, sqrt(dot3(from_stored, from_stored)) + moved);
+    FitOutcome nearest = outcomes[nearest_slot(near, hit.position, ray.hit_slot, moved > 0.0, slots)];
     float h = nearest.feature_size;
     Rows rows = rows_around(hit.position, REACH * h);
     uint kind;

@@ -43,7 +43,11 @@ float extent_of_cell(vec4 extent, vec4 cosines, vec4 sines, float c[6]) {
     return max(max(square.x, square.y), max(square.z, square.w));
 }
 
+float farthest_of(vec4 extent) {
+    return max(max(extent.x, extent.y), max(extent.z, extent.w));
+}
+
 bool bounded(vec4 extent) {
-    return max(max(extent.x, extent.y), max(extent.z, extent.w)) <= 1.0;
+    return farthest_of(extent) <= 1.0;
 }
 #endif

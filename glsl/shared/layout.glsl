@@ -29,6 +29,11 @@
 #define FIT_POLYNOMIALS 2
 #define FIT_OUTCOMES 3
 #define FIT_SIZES 4
+#define FIT_RIMS 5
+
+// clip_balls
+#define CLIP_CLIPS 0
+#define CLIP_POLYNOMIALS 1
 
 // grid_count, grid_emit, grid_ranges
 #define GRID_INFO 0
@@ -126,7 +131,7 @@ struct ListedPoint {     // 16 bytes
 // The surface near one point: with y = x - center,
 // dot(gradient, y) - offset - y' M y = 0 where |y| <= trust (method, section 1, step 3).
 struct Polynomial {       // 64 bytes
-    vec4 center_trust;    //  0  p, and b; b = 0: the point carries no surface
+    vec4 center_trust;    //  0  p, and b; b = 0: the point carries no surface; at a rim, a ball inside that one
     vec4 gradient_offset; // 16  m = n - E u - F v, and D
     vec4 curvature;       // 32  M: xx, yy, zz, xy
     vec2 cross_terms;     // 48  M: xz, yz
@@ -140,7 +145,25 @@ struct FitOutcome {      // 12 bytes
     float feature_size;  // 8  h
 };
 
-struct FitParams {       // 40 bytes
+// What a point's neighbours say about a rim of the set.
+struct Rim {             // 20 bytes
+    float outward[3];    //  0  unit, in the tangent plane; 0 where the cell is not open
+    float reach;         // 12  along it: from the point to where the surface ends
+    float openness;      // 16  reach of the Voronoi cell over that of the neighbours
+};
+
+// A trust ball that ends at a rim.
+struct BallClip {        // 20 bytes
+    uint slot;           //  0
+    float trust;         //  4  its radius
+    float shift[3];      //  8  from the point to its centre
+};
+
+struct ClipParams {      // 4 bytes
+    uint count;          // 0
+};
+
+struct FitParams {       // 44 bytes
     uint first_slot;     //  0  of this batch
     uint point_count;    //  4  in this batch
     uint neighbors;      //  8  entries a point in the list of neighbours
@@ -151,6 +174,7 @@ struct FitParams {       // 40 bytes
     uint first_listed;   // 28  slot whose neighbours come first in the list
     float weight_scale;  // 32  h over the width of the weights
     uint close_gaps;     // 36  1: b grows, at most to h, where neighbours leave a gap
+    float rim_limit;     // 40  of the distance to the centroid, over the neighbours' reach; 0: no rims
 };
 
 struct GridInfo {        // 32 bytes

@@ -152,6 +152,7 @@ fn measure(shape: &Shape, polynomial: &str, project: bool, count: u32) -> Errors
     let around = Surroundings {
         grid: &grid,
         polynomials: &reference.polynomials,
+        points: &plan.cloud.points,
         outcomes: &reference.outcomes,
         cells: &reference.point_cells,
         objects: &plan.objects,

@@ -78,6 +78,12 @@ constants! {
     FIT_OUTCOMES = 3;
     /// Binding of `fit_polynomials`: h by slot, where it is smoothed.
     FIT_SIZES = 4;
+    /// Binding of `fit_polynomials`: [`Rim`]s of the batch.
+    FIT_RIMS = 5;
+    /// Binding of `clip_balls`: [`BallClip`]s.
+    CLIP_CLIPS = 0;
+    /// Binding of `clip_balls`: polynomials.
+    CLIP_POLYNOMIALS = 1;
     /// Binding of the grid build: [`GridInfo`].
     GRID_INFO = 0;
     /// Binding of the grid build: polynomials.
@@ -234,7 +240,8 @@ gpu_layout!(ListedPoint, 16, { position: 0, slot: 12 });
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Polynomial {
-    /// p, and the trust radius b; b = 0 where the point carries no surface.
+    /// p, and the trust radius b; b = 0 where the point carries no surface. At a rim, centre and radius
+    /// of a ball inside that one.
     pub center_trust: [f32; 4],
     /// m = n − E u − F v, and D.
     pub gradient_offset: [f32; 4],
@@ -264,6 +271,41 @@ pub struct FitOutcome {
 }
 gpu_layout!(FitOutcome, 12, { trust: 0, kind: 4, feature_size: 8 });
 
+/// What a point's neighbours say about a rim of the set.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Rim {
+    /// Unit vector in the tangent plane; zero where the cell is not open.
+    pub outward: [f32; 3],
+    /// Along it: from the point to where the surface ends.
+    pub reach: f32,
+    /// Reach of the Voronoi cell over that of the neighbours.
+    pub openness: f32,
+}
+gpu_layout!(Rim, 20, { outward: 0, reach: 12, openness: 16 });
+
+/// A trust ball that ends at a rim.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct BallClip {
+    /// Of the point.
+    pub slot: u32,
+    /// The ball's radius.
+    pub trust: f32,
+    /// From the point to the ball's centre.
+    pub shift: [f32; 3],
+}
+gpu_layout!(BallClip, 20, { slot: 0, trust: 4, shift: 8 });
+
+/// Push constants of `clip_balls`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ClipParams {
+    /// Balls.
+    pub count: u32,
+}
+gpu_layout!(ClipParams, 4, { count: 0 });
+
 /// Push constants of `fit_polynomials`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -288,10 +330,12 @@ pub struct FitParams {
     pub weight_scale: f32,
     /// 1: b grows, at most to h, where neighbours leave a gap.
     pub close_gaps: u32,
+    /// Of the distance to the centroid, over the reach of the neighbours; 0: no rims.
+    pub rim_limit: f32,
 }
-gpu_layout!(FitParams, 40, {
+gpu_layout!(FitParams, 44, {
     first_slot: 0, point_count: 4, neighbors: 8, polynomial: 12, feature_size: 16, trust: 20,
-    object: 24, first_listed: 28, weight_scale: 32, close_gaps: 36,
+    object: 24, first_listed: 28, weight_scale: 32, close_gaps: 36, rim_limit: 40,
 });
 
 /// The uniform grid's place and size.
@@ -609,6 +653,9 @@ pub const STRUCTS: &[StructLayout] = &[
     ListedPoint::LAYOUT,
     Polynomial::LAYOUT,
     FitOutcome::LAYOUT,
+    Rim::LAYOUT,
+    BallClip::LAYOUT,
+    ClipParams::LAYOUT,
     FitParams::LAYOUT,
     GridInfo::LAYOUT,
     GridParams::LAYOUT,

@@ -30,6 +30,8 @@ modules! {
     cell_offsets,
     /// What becomes of each ray of a wave.
     classify,
+    /// Trust balls that end at rims.
+    clip_balls,
     /// Screen tiles that each disc covers.
     disc_count,
     /// Pairs of screen tile and point.

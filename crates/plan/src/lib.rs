@@ -322,12 +322,19 @@ fn kind_of(polynomial: Polynomial) -> u32 {
     }
 }
 
+/// Distance from the centroid of k neighbours at which the surface ends, over their reach: half a spacing
+/// beyond a straight rim. The spacing is less of the reach where there are more.
+fn rim_limit(neighbors: u32) -> f32 {
+    (0.37 + 0.4 / f64::from(neighbors).sqrt()) as f32
+}
+
 fn fit_params(object: &Object, index: u32, cloud: &Cloud) -> FitParams {
     let slots = cloud.objects[index as usize];
+    let neighbors = object.surface.neighbors.min(slots.count.saturating_sub(1)).max(1);
     FitParams {
         first_slot: slots.first_slot,
         point_count: slots.count,
-        neighbors: object.surface.neighbors.min(slots.count.saturating_sub(1)).max(1),
+        neighbors,
         polynomial: kind_of(object.surface.polynomial),
         feature_size: match object.surface.feature_size {
             FeatureSize::Adaptive => 0.0,
@@ -339,6 +346,7 @@ fn fit_params(object: &Object, index: u32, cloud: &Cloud) -> FitParams {
         first_listed: slots.first_slot,
         weight_scale: (1.0 / object.surface.weight_width) as f32,
         close_gaps: u32::from(object.surface.close_gaps),
+        rim_limit: if object.surface.boundary_clip { rim_limit(neighbors) } else { 0.0 },
     }
 }
 

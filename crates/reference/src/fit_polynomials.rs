@@ -2,11 +2,12 @@
 
 use crate::eigen::eigen_symmetric;
 use crate::fit::{COLLINEAR, Frame, fit_coefficients};
-use crate::gap::reach_needed;
+use crate::gap::{cell_extents, reach_needed};
 use crate::least_squares::NormalEquations;
 use crate::polynomial::Polynomial;
 use crate::real::{Real, V3};
-use kernels::layout::{FIT_NO_SURFACE, FitParams, NONE, Point};
+use crate::rim;
+use kernels::layout::{FIT_NO_SURFACE, FitParams, NONE, Point, Rim};
 
 const SMALLEST_FEATURE: f64 = 1e-15;
 
@@ -35,7 +36,20 @@ impl Neighborhood<'_> {
     }
 }
 
-/// The polynomial of one point, one of `FIT_*`, and h. `list` holds its neighbours' slots, nearest
+/// What becomes of one point.
+#[derive(Debug, Clone, Copy)]
+pub struct Fitted<R> {
+    /// Its surface.
+    pub polynomial: Polynomial<R>,
+    /// One of `FIT_*`.
+    pub kind: u32,
+    /// h.
+    pub feature_size: R,
+    /// Zeros where the point does not lie at a rim, or none is asked for.
+    pub rim: Rim,
+}
+
+/// Fits the polynomial of one point. `list` holds its neighbours' slots, nearest
 /// first, `NONE` behind the last; `size` is its h, where that is smoothed.
 #[must_use]
 pub fn fit_polynomial<R: Real>(
@@ -44,7 +58,7 @@ pub fn fit_polynomial<R: Real>(
     list: &[u32],
     params: &FitParams,
     size: Option<f32>,
-) -> (Polynomial<R>, u32, R) {
+) -> Fitted<R> {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let count = list.iter().position(|&neighbor| neighbor == NONE).unwrap_or(list.len());
     let center = points[slot].position;
@@ -100,12 +114,32 @@ pub fn fit_polynomial<R: Real>(
     let frame = Frame { n, u, v };
     let mut polynomial = frame.to_world(V3::of_f32(center), h, inverse_h, &coefficients);
     let mut ratio = R::of_f32(params.trust);
-    if params.close_gaps != 0 && kind != FIT_NO_SURFACE {
-        let tangential = samples().map(|(y, _)| [y.dot(u), y.dot(v)]);
-        ratio = ratio.max(reach_needed(tangential, &coefficients).min(one));
+    let mut openness = zero;
+    let finds_rims = params.rim_limit > 0.0;
+    if (params.close_gaps != 0 || finds_rims) && kind != FIT_NO_SURFACE {
+        let extents = cell_extents(samples().map(|(y, _)| [y.dot(u), y.dot(v)]));
+        if params.close_gaps != 0 {
+            ratio = ratio.max(reach_needed(&extents, &coefficients).min(one));
+        }
+        openness = extents.into_iter().fold(zero, R::max) * (h / reach);
     }
     polynomial.trust = if kind == FIT_NO_SURFACE { zero } else { ratio * h };
     polynomial.object = params.object;
     polynomial.index = points[slot].index;
-    (polynomial, kind, h)
+
+    let (mean_u, mean_v) = (mean.dot(u), mean.dot(v));
+    let away = (mean_u * mean_u + mean_v * mean_v).sqrt();
+    let mut rim = Rim::default();
+    if finds_rims && openness > R::of(rim::OPEN) && away > R::of(rim::SHORTEST) {
+        let outward = -(u.times(mean_u) + v.times(mean_v)).over(away);
+        let inverse_reach = one / reach;
+        let neighbors = || (0..count).map(|j| around.offset::<R>(j).times(inverse_reach));
+        let s = rim::reach_of_rim(neighbors, outward, R::of_f32(params.rim_limit));
+        rim = Rim {
+            outward: outward.0.map(R::to_f32),
+            reach: (s * reach).to_f32(),
+            openness: openness.to_f32(),
+        };
+    }
+    Fitted { polynomial, kind, feature_size: h, rim }
 }

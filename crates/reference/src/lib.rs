@@ -25,6 +25,7 @@ pub mod polynomial;
 pub mod projection;
 pub mod real;
 pub mod refine;
+pub mod rim;
 pub mod shade;
 pub mod surface_hit;
 mod wave;
@@ -32,12 +33,13 @@ mod wave;
 use bytemuck::Zeroable;
 use camera_rays::Ray;
 use disc_bin::{DiscLists, disc_bin};
+use fit_polynomials::Fitted;
 use grid::Grid;
 use grid_build::CellLists;
 use grid_trace::grid_trace;
 use kernels::layout::{FilmPixel, FitOutcome, GridInfo};
 use plan::{Picture, Plan, Rays, Window};
-use points::{NeighborSearch, Watch, plan_grid};
+use points::{NeighborSearch, Rims, Watch, plan_grid};
 use polynomial::Polynomial;
 use rayon::prelude::*;
 use real::Real;
@@ -69,7 +71,8 @@ impl<R: Real> Reference<R> {
     #[must_use]
     pub fn new(plan: &Plan, watch: &dyn Watch) -> Option<Self> {
         let cloud = &plan.cloud;
-        let mut fitted: Vec<(Polynomial<R>, u32, R)> = Vec::with_capacity(cloud.points.len());
+        let mut fitted: Vec<Fitted<R>> = Vec::with_capacity(cloud.points.len());
+        let mut rims = Rims::default();
         watch.stage("fitting surfaces", cloud.points.len() as u64);
         for (object, params) in cloud.objects.iter().zip(&plan.fits) {
             let range = object.range();
@@ -90,27 +93,33 @@ impl<R: Real> Reference<R> {
                         fit_polynomials::fit_polynomial(&cloud.points, slot, list, params, size)
                     })
                     .collect();
+                let found: Vec<_> = fits.iter().map(|fit: &Fitted<R>| fit.rim).collect();
+                rims.add((range.start + first) as u32, &found, &lists);
                 fitted.extend(fits);
                 watch.done(fitted.len() as u64);
             }
         }
         let outcomes: Vec<FitOutcome> = fitted
             .iter()
-            .map(|&(polynomial, kind, h)| FitOutcome {
-                trust: polynomial.trust.to_f32(),
-                kind,
-                feature_size: h.to_f32(),
+            .map(|fit| FitOutcome {
+                trust: fit.polynomial.trust.to_f32(),
+                kind: fit.kind,
+                feature_size: fit.feature_size.to_f32(),
             })
             .collect();
-        let polynomials: Vec<Polynomial<R>> = fitted.into_iter().map(|fit| fit.0).collect();
+        let mut polynomials: Vec<Polynomial<R>> =
+            fitted.into_iter().map(|fit| fit.polynomial).collect();
         watch.stage("building the grid", 1);
         let grid = plan_grid(&cloud.points, &outcomes, plan.grid_resolution);
-        let lists = grid_build::build_grid(&grid, &polynomials, &cloud.order);
         let point_cells = if plan.refines() {
             grid_build::list_points(&Grid::from(&grid), &polynomials, &cloud.order)
         } else {
             PointCells::default()
         };
+        for clip in rims.clips(&cloud.points, &outcomes) {
+            rim::clip_ball(&mut polynomials[clip.slot as usize], &clip);
+        }
+        let lists = grid_build::build_grid(&grid, &polynomials, &cloud.order);
         watch.done(1);
         Some(Self { polynomials, outcomes, grid, lists, point_cells })
     }
@@ -193,6 +202,7 @@ impl<R: Real> Reference<R> {
         let surroundings = Surroundings {
             grid,
             polynomials: &self.polynomials,
+            points: &plan.cloud.points,
             outcomes: &self.outcomes,
             cells: &self.point_cells,
             objects: &plan.objects,

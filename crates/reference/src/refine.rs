@@ -9,7 +9,7 @@ use crate::least_squares::NormalEquations;
 use crate::polynomial::Polynomial;
 use crate::real::{NO_HIT, Real, V3};
 use crate::surface_hit::Hit;
-use kernels::layout::{FIT_NO_SURFACE, FitOutcome, NONE, ObjectInfo};
+use kernels::layout::{FIT_NO_SURFACE, FitOutcome, NONE, ObjectInfo, Point};
 
 const REACH: f64 = 3.0;
 const MAX_ROWS: u32 = 1024;
@@ -31,6 +31,8 @@ pub struct Surroundings<'a, R> {
     pub grid: &'a Grid<R>,
     /// By slot.
     pub polynomials: &'a [Polynomial<R>],
+    /// By slot: where the points are. (Balls at rims have other centres.)
+    pub points: &'a [Point],
     /// By slot.
     pub outcomes: &'a [FitOutcome],
     /// The points of each cell.
@@ -66,18 +68,24 @@ impl<R: Real> Surroundings<'_, R> {
             .then(|| rows.flat_map(|row| self.cells.slots[row].iter().copied()).collect())
     }
 
-    /// The object's point nearest to x; the stored one is near (ties: the lower index).
-    fn nearest(&self, slots: &[u32], x: V3<R>, stored: u32) -> u32 {
+    /// The object's point nearest to x; the stored one is near (ties: the lower index), and among `slots`
+    /// if its ball was clipped, so that its centre lies elsewhere.
+    fn nearest(&self, slots: &[u32], x: V3<R>, stored: u32, clipped: bool) -> u32 {
         let object = self.polynomials[stored as usize].object;
         let key = |slot: u32| {
-            let p = &self.polynomials[slot as usize];
-            let y = p.center - x;
-            (y.dot(y), p.index)
+            let point = &self.points[slot as usize];
+            let y = V3::of_f32(point.position) - x;
+            (y.dot(y), point.index)
         };
         let mut best = stored;
+        let mut best_key = key(stored);
+        if clipped {
+            best_key.0 = R::of(NO_HIT);
+        }
         for &slot in slots {
-            if self.polynomials[slot as usize].object == object && key(slot) < key(best) {
+            if self.polynomials[slot as usize].object == object && key(slot) < best_key {
                 best = slot;
+                best_key = key(slot);
             }
         }
         best
@@ -92,7 +100,7 @@ impl<R: Real> Surroundings<'_, R> {
         let neighbors = || {
             slots.iter().filter_map(|&slot| {
                 let p = &self.polynomials[slot as usize];
-                let y = (p.center - x).times(inverse_h);
+                let y = (V3::of_f32(self.points[slot as usize].position) - x).times(inverse_h);
                 let square = y.dot(y);
                 let counts = square <= R::of(REACH * REACH) && p.object == object;
                 counts.then(|| (y, (-square * weight_square).exp_negative()))
@@ -129,12 +137,15 @@ impl<R: Real> Surroundings<'_, R> {
     pub fn refine(&self, ray: &Ray<R>, mut hit: Hit<R>) -> Refined<R> {
         let stored = &self.polynomials[ray.hit_slot as usize];
         let info = &self.objects[stored.object as usize];
+        // More than 0 where the ball was clipped: from its point to its centre.
+        let moved = R::of_f32(self.outcomes[ray.hit_slot as usize].trust) - stored.trust;
+        let clipped = moved > R::of(0.0);
         let mut iterations = 0;
         while iterations < info.max_iterations {
             let from_stored = hit.position - stored.center;
-            let reach = from_stored.dot(from_stored).sqrt();
+            let reach = from_stored.dot(from_stored).sqrt() + moved;
             let Some(near) = self.around(hit.position, reach) else { break };
-            let nearest = self.nearest(&near, hit.position, ray.hit_slot) as usize;
+            let nearest = self.nearest(&near, hit.position, ray.hit_slot, clipped) as usize;
             let h = R::of_f32(self.outcomes[nearest].feature_size);
             let Some(slots) = self.around(hit.position, R::of(REACH) * h) else { break };
             let (mut p, kind) = self.fit_at(&slots, hit.position, h, stored.object);

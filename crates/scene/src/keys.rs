@@ -408,7 +408,13 @@ pub(crate) static SURFACE: Table = Table {
             "Drop points whose mean distance to their neighbours is over the mean of all points' by \
              more than this, and at least twice that mean; 0 drops none. How many is said.",
         ),
-        announced("boundary_clip", "Cut the surface at the rim of an open point set."),
+        key(
+            "boundary_clip",
+            Kind::Bool,
+            Value("true"),
+            "End the surface of an open set near its last points, about half their spacing beyond, not \
+             a trust radius. Even closed sets are not changed.",
+        ),
         key(
             "normals",
             Kind::Choice(&["polynomial", "blended"]),

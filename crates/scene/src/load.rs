@@ -290,6 +290,7 @@ impl Surface {
             drop_isolated: table.number("drop_isolated"),
             weight_width: table.number("weight_width"),
             close_gaps: table.flag("close_gaps"),
+            boundary_clip: table.flag("boundary_clip"),
             normals: match table.text("normals").as_str() {
                 "blended" => Normals::Blended,
                 _ => Normals::Polynomial,

@@ -43,7 +43,6 @@ pub(crate) const NOT_BUILT: &[NotBuilt] = &[
     key("lights.radius"),
     key("objects.filter"),
     key("objects.volume"),
-    key("objects.surface.boundary_clip"),
     key("objects.material.texture"),
     key("objects.material.texture_axis"),
 ];

@@ -157,6 +157,8 @@ pub struct Surface {
     pub weight_width: f64,
     /// Whether single trust radii grow, at most to the feature size, where neighbours leave a gap.
     pub close_gaps: bool,
+    /// Whether the surface of an open set ends near its last points.
+    pub boundary_clip: bool,
     /// Whose normal a hit has; refined hits have that of the surface they are on.
     pub normals: Normals,
     /// What becomes of a hit with a stored polynomial.

@@ -134,7 +134,8 @@ fn write_surface(out: &mut String, surface: &Surface) -> fmt::Result {
     writeln!(out, "normals = \"{normals}\"")?;
     writeln!(out, "drop_isolated = {:?}", surface.drop_isolated)?;
     writeln!(out, "weight_width = {:?}", surface.weight_width)?;
-    writeln!(out, "close_gaps = {}", surface.close_gaps)
+    writeln!(out, "close_gaps = {}", surface.close_gaps)?;
+    writeln!(out, "boundary_clip = {}", surface.boundary_clip)
 }
 
 /// A TOML basic string.

@@ -59,6 +59,7 @@ normals = "blended"
 drop_isolated = 3.5
 weight_width = 1.5
 close_gaps = false
+boundary_clip = false
 [objects.material]
 kind = "diffuse"
 albedo = [0.2, 0.4, 0.6]
@@ -145,6 +146,7 @@ fn every_built_key_is_read() {
             drop_isolated: 3.5,
             weight_width: 1.5,
             close_gaps: false,
+            boundary_clip: false,
             refine: Refine::Project { tolerance: 2e-5, max_iterations: 12 },
         },
         material: Material { kind: MaterialKind::Diffuse, albedo: Albedo::Color([0.2, 0.4, 0.6]) },
@@ -174,6 +176,7 @@ fn what_is_left_out_is_the_contracts_default() {
         drop_isolated: 0.0,
         weight_width: 1.0,
         close_gaps: true,
+        boundary_clip: true,
         refine: Refine::None,
     };
     assert_eq!((object.surface, object.material.albedo), (surface, Albedo::Default));
@@ -272,7 +275,6 @@ fn what_is_not_built_says_so_and_is_not_ignored() {
         ("objects.0.material.ior=1.4", "objects[0].material.ior"),
         ("objects.0.material.priority=0", "objects[0].material.priority"),
         ("objects.1.volume.scalar=density", "objects[1].volume"),
-        ("objects.0.surface.boundary_clip=true", "objects[0].surface.boundary_clip"),
     ] {
         let error = error_with(FULL, &[set]);
         assert!(error.contains(&format!(": {path}: ")), "{set}: {error}");

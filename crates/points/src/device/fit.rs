@@ -3,7 +3,7 @@
 use super::line;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    FIT_NEIGHBORS, FIT_OUTCOMES, FIT_POINTS, FIT_POLYNOMIALS, FIT_SIZES, FitParams,
+    FIT_NEIGHBORS, FIT_OUTCOMES, FIT_POINTS, FIT_POLYNOMIALS, FIT_RIMS, FIT_SIZES, FitParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -16,6 +16,8 @@ pub(crate) struct FitPolynomialsIo<'a> {
     pub outcomes: &'a Buffer,
     /// h by slot, where it is smoothed; otherwise anything.
     pub sizes: &'a Buffer,
+    /// One a point of the batch, where rims are asked for; otherwise anything.
+    pub rims: &'a Buffer,
 }
 
 /// The local polynomial of each point of one batch (method, section 1).
@@ -33,6 +35,7 @@ impl FitPolynomials {
             (FIT_POLYNOMIALS, Binding::StorageBuffer),
             (FIT_OUTCOMES, Binding::StorageBuffer),
             (FIT_SIZES, Binding::StorageBuffer),
+            (FIT_RIMS, Binding::StorageBuffer),
         ];
         let params = size_of::<FitParams>();
         let kernel = Kernel::new(device, Self::NAME, &spirv::fit_polynomials(), &bindings, params)?;
@@ -47,6 +50,7 @@ impl FitPolynomials {
             .buffer(FIT_POLYNOMIALS, io.polynomials)
             .buffer(FIT_OUTCOMES, io.outcomes)
             .buffer(FIT_SIZES, io.sizes)
+            .buffer(FIT_RIMS, io.rims)
             .push(params)
             .dispatch(line(params.point_count));
     }

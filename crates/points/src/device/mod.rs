@@ -3,6 +3,7 @@
 //! Count, scan, stable scatter: the order in a cell is the order of (object, place in the file), so
 //! a render gives the same bytes from run to run. No float atomics, no atomic append.
 
+mod clip;
 mod fit;
 mod grid_build;
 mod scan;
@@ -11,11 +12,11 @@ mod sort;
 pub use scan::Scan;
 pub use sort::{Pairs, Sort, SortSpace};
 
-use crate::{Cloud, NeighborSearch, Watch, plan_grid};
+use crate::{Cloud, NeighborSearch, Rims, Watch, plan_grid};
 use fit::FitPolynomials;
 use gpu::{Buffer, Device, GpuError, Recorder};
 use grid_build::{GridBuild, GridBuildIo};
-use kernels::layout::{FitOutcome, FitParams, GridInfo, LINE_ROW, Polynomial};
+use kernels::layout::{FitOutcome, FitParams, GridInfo, LINE_ROW, Polynomial, Rim};
 use std::sync::Arc;
 
 /// Points whose neighbours are listed and fitted in one go: 8 MiB of lists at k = 16.
@@ -82,7 +83,7 @@ impl Surfaces {
         let count = cloud.points.len();
         let polynomials =
             Buffer::new(device, "polynomials", (count * size_of::<Polynomial>()) as u64)?;
-        let (outcomes, outcome_buffer) = fit_all(device, cloud, fits, &polynomials, watch)?;
+        let (outcomes, outcome_buffer, rims) = fit_all(device, cloud, fits, &polynomials, watch)?;
         watch.stage("building the grid", 1);
         let grid = plan_grid(&cloud.points, &outcomes, resolution);
         let grid_info = Buffer::from_slice(device, "grid info", &[grid])?;
@@ -93,8 +94,10 @@ impl Surfaces {
             polynomials: &polynomials,
             order: &cloud.order,
         };
-        let lists = build.run(&io)?;
+        // Refinement asks for the points, the grid for their balls: those move at rims.
         let point_cells = if refines { build.list_points(&io)? } else { None };
+        clip::clip_balls(device, &polynomials, &rims.clips(&cloud.points, &outcomes))?;
+        let lists = build.run(&io)?;
         watch.done(1);
         Ok(Self {
             polynomials,
@@ -119,19 +122,24 @@ impl Surfaces {
     }
 }
 
-/// Fits batch after batch, outcomes on the host and on the device, so that lists of neighbours never fill memory.
+/// Fits batch after batch, outcomes on the host and on the device, so that lists of neighbours never fill memory;
+/// with the rims.
 fn fit_all(
     device: &Arc<Device>,
     cloud: &Cloud,
     fits: &[FitParams],
     polynomials: &Buffer,
     watch: &dyn Watch,
-) -> Result<(Vec<FitOutcome>, Buffer), BuildError> {
+) -> Result<(Vec<FitOutcome>, Buffer, Rims), BuildError> {
     let count = cloud.points.len();
     let points = Buffer::from_slice(device, "points", &cloud.points)?;
     let outcomes = Buffer::new(device, "fit outcomes", (count * size_of::<FitOutcome>()) as u64)?;
     let smoothed = fits.iter().any(|fit| fit.feature_size < 0.0);
     let sizes = Buffer::new(device, "feature sizes", if smoothed { count as u64 * 4 } else { 4 })?;
+    let finds_rims = fits.iter().any(|fit| fit.rim_limit > 0.0);
+    let most_rims = if finds_rims { count.min(FIT_BATCH) } else { 1 };
+    let rim_buffer = Buffer::new(device, "rims", (most_rims * size_of::<Rim>()) as u64)?;
+    let mut rims = Rims::default();
     let pass = FitPolynomials::new(device)?;
     let mut recorder = Recorder::new(device)?;
     watch.stage("fitting surfaces", count as u64);
@@ -159,16 +167,22 @@ fn fit_all(
                 polynomials,
                 outcomes: &outcomes,
                 sizes: &sizes,
+                rims: &rim_buffer,
             };
             pass.record(&mut recorder, io, &params);
             recorder.submit()?;
+            if fit.rim_limit > 0.0 {
+                let mut found = vec![Rim::default(); batch.len()];
+                rim_buffer.read(0, &mut found)?;
+                rims.add(first_slot, &found, &lists);
+            }
             done += batch.len() as u64;
             watch.done(done);
         }
     }
     let mut read = vec![FitOutcome { trust: 0.0, kind: 0, feature_size: 0.0 }; count];
     outcomes.read(0, &mut read)?;
-    Ok((read, outcomes))
+    Ok((read, outcomes, rims))
 }
 
 /// Invocations for a list of `count` entries: over rows where one axis would be too short.
