@@ -13,6 +13,7 @@
 #define STATE_READS
 #include "layout.glsl"
 #include "math.glsl"
+#include "light.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
@@ -35,15 +36,13 @@ vec3 point_color(ObjectInfo object, uint slot) {
     return has_colors ? color : object.albedo;
 }
 
-// What one light sends to a surface at x, by Lambert's law.
-vec3 irradiance(Light light, vec3 x, vec3 normal) {
-    vec3 towards = light.vector - x;
-    float square = dot3(towards, towards);
-    bool is_point = light.kind == LIGHT_POINT && square > 0.0;
-    vec3 l = is_point ? towards / sqrt(square) : light.vector;
-    float cosine = max(dot3(normal, l), 0.0);
-    vec3 arriving = is_point ? light.strength / square : light.strength;
-    return light.kind == LIGHT_POINT && !is_point ? vec3(0.0) : arriving * cosine;
+// What light i sends to a surface at x, by Lambert's law: from its centre, unless it is sampled.
+vec3 irradiance(uint i, uvec2 pixel, vec3 x, vec3 normal) {
+    bool sampled = params.sample_index != NONE;
+    vec2 u = vec2(0.5);
+    if (sampled) u = sample_2d(params.tile_origin + pixel, params.sample_index, params.seed, uint(SAMPLE_LIGHT) + i);
+    LightSample light = sample_light(lights[i], x, u);
+    return light.arriving * max(dot3(normal, light.towards), 0.0);
 }
 
 void main() {
@@ -61,7 +60,7 @@ void main() {
     }
     uint index = polynomials[ray.hit_slot].object;
     vec3 light = vec3(0.0);
-    for (uint i = 0u; i < params.light_count; ++i) light += irradiance(lights[i], hit.position, hit.normal);
+    for (uint i = 0u; i < params.light_count; ++i) light += irradiance(i, pixel, hit.position, hit.normal);
     vec3 radiance = ray.color + point_color(objects[index], ray.hit_slot) * (light * INVERSE_PI);
     float depth = hit.t * dot3(ray.direction, params.forward);
     film[at] = FilmPixel(vec4(radiance, 1.0), vec4(hit.position, depth), vec4(hit.normal, float(index)), counts);

@@ -94,6 +94,12 @@
 #define LIGHT_DIRECTIONAL 0
 #define LIGHT_POINT 1
 
+// What each two numbers of the low-discrepancy sequence are for (sampler.glsl).
+#define SAMPLE_FILM 0
+#define SAMPLE_LENS 1
+#define SAMPLE_FRESNEL 2 // then one a bounce
+#define SAMPLE_LIGHT 4096 // then one a light
+
 struct Point {           // 16 bytes
     vec3 position;       //  0  centred scene space
     uint index;          // 12  place in its file
@@ -199,12 +205,15 @@ struct DiscTraceParams { // 28 bytes
     uint work;           // 24  loop iterations a ray may spend in this pass
 };
 
-struct ShadeParams {     // 40 bytes
+struct ShadeParams {     // 56 bytes
     vec3 forward;        //  0  viewing axis
     uint light_count;    // 12
     vec3 background;     // 16
     uint transparent;    // 28  1: the background is left out
     uvec2 tile_size;     // 32
+    uvec2 tile_origin;   // 40  in the full image, pixels
+    uint sample_index;   // 48  of the pixel; NONE: there is one alone, and lights have no extent
+    uint seed;           // 52
 };
 
 struct ObjectInfo {      // 48 bytes
@@ -224,7 +233,7 @@ struct Light {           // 32 bytes
     vec3 vector;         //  0  unit, towards a directional light; a point light's position
     uint kind;           // 12  LIGHT_*
     vec3 strength;       // 16  irradiance, or intensity
-    uint pad;            // 28
+    float extent;        // 28  sine of half its angle, or radius; 0: hard
 };
 
 struct Hit {             // 32 bytes

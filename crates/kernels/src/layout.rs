@@ -177,6 +177,14 @@ constants! {
     LIGHT_DIRECTIONAL = 0;
     /// A light at a point.
     LIGHT_POINT = 1;
+    /// Numbers of the low-discrepancy sequence for the place on the film.
+    SAMPLE_FILM = 0;
+    /// For the place on the lens.
+    SAMPLE_LENS = 1;
+    /// For what glass does with a ray: one a bounce from here on.
+    SAMPLE_FRESNEL = 2;
+    /// For the place on a light: one a light from here on.
+    SAMPLE_LIGHT = 4096;
 }
 
 /// One point of the scene.
@@ -426,9 +434,16 @@ pub struct ShadeParams {
     pub transparent: u32,
     /// Columns and rows of the tile.
     pub tile_size: [u32; 2],
+    /// The tile's first pixel in the full image.
+    pub tile_origin: [u32; 2],
+    /// Which sample of its pixel; `NONE` where there is one alone, and lights have no extent.
+    pub sample_index: u32,
+    /// Of all that is random.
+    pub seed: u32,
 }
-gpu_layout!(ShadeParams, 40, {
-    forward: 0, light_count: 12, background: 16, transparent: 28, tile_size: 32,
+gpu_layout!(ShadeParams, 56, {
+    forward: 0, light_count: 12, background: 16, transparent: 28, tile_size: 32, tile_origin: 40,
+    sample_index: 48, seed: 52,
 });
 
 /// What shading needs of an object.
@@ -472,10 +487,10 @@ pub struct Light {
     pub kind: u32,
     /// Irradiance on a surface facing it, or intensity.
     pub strength: [f32; 3],
-    /// Unused.
-    pub pad: u32,
+    /// Sine of half the angle of a directional light; a point light's radius. 0: it is hard.
+    pub extent: f32,
 }
-gpu_layout!(Light, 32, { vector: 0, kind: 12, strength: 16, pad: 28 });
+gpu_layout!(Light, 32, { vector: 0, kind: 12, strength: 16, extent: 28 });
 
 /// Where a pixel's ray met a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

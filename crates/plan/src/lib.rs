@@ -175,6 +175,9 @@ impl Plan {
                 background: scene.background.color.map(|c| c as f32),
                 transparent: u32::from(scene.image.transparent),
                 tile_size: [0, 0],
+                tile_origin: [0, 0],
+                sample_index: NONE,
+                seed: scene.render.seed,
             },
             objects,
             colors,
@@ -226,7 +229,7 @@ impl Plan {
     /// Parameters of `shade` for one tile.
     #[must_use]
     pub fn shade_of(&self, tile: &Window) -> ShadeParams {
-        ShadeParams { tile_size: tile.size, ..self.shade }
+        ShadeParams { tile_size: tile.size, tile_origin: tile.origin, ..self.shade }
     }
 
     /// An empty picture, to be filled tile by tile.
@@ -353,17 +356,17 @@ fn object_infos(
 fn local_light(light: &Light, origin: [f64; 3]) -> layout::Light {
     let f32s = |v: [f64; 3]| v.map(|x| x as f32);
     match *light {
-        Light::Directional { direction, irradiance } => layout::Light {
+        Light::Directional { direction, irradiance, angle } => layout::Light {
             vector: (-glam::DVec3::from(direction).normalize()).as_vec3().into(),
             kind: LIGHT_DIRECTIONAL,
             strength: f32s(irradiance),
-            pad: 0,
+            extent: (0.5 * angle).to_radians().sin() as f32,
         },
-        Light::Point { position, intensity } => layout::Light {
+        Light::Point { position, intensity, radius } => layout::Light {
             vector: f32s([0, 1, 2].map(|axis| position[axis] - origin[axis])),
             kind: LIGHT_POINT,
             strength: f32s(intensity),
-            pad: 0,
+            extent: radius as f32,
         },
     }
 }

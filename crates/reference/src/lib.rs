@@ -18,10 +18,12 @@ pub mod grid;
 pub mod grid_build;
 pub mod grid_trace;
 pub mod least_squares;
+pub mod light;
 pub mod polynomial;
 pub mod projection;
 pub mod real;
 pub mod refine;
+pub mod sampler;
 pub mod shade;
 pub mod surface_hit;
 
@@ -168,7 +170,7 @@ impl<R: Real> Reference<R> {
                     None => grid_trace(&mut ray, &grid, &self.lists, &self.polynomials),
                 }
                 let (hit, iterations) = self.settle(plan, &grid, &mut ray);
-                shade::shade(&ray, hit, iterations, &shading)
+                shade::shade(&ray, hit, iterations, pixel, &shading)
             })
             .collect()
     }

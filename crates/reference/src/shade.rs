@@ -1,9 +1,11 @@
 //! Twin of `shade`: Lambert's law at the hit, the background where there is none.
 
 use crate::camera_rays::Ray;
+use crate::light::sample_light;
 use crate::real::{Real, V3};
+use crate::sampler::sample_2d;
 use crate::surface_hit::Hit;
-use kernels::layout::{FilmPixel, LIGHT_POINT, Light, NONE, ObjectInfo, ShadeParams};
+use kernels::layout::{FilmPixel, Light, NONE, ObjectInfo, SAMPLE_LIGHT, ShadeParams};
 
 /// What shading reads besides the ray.
 #[derive(Debug, Clone, Copy)]
@@ -26,28 +28,33 @@ fn point_color<R: Real>(shading: &Shading<'_>, object: &ObjectInfo, slot: u32) -
     V3([0, 1, 2].map(|channel| R::of_f32(shading.colors[at + channel])))
 }
 
-/// What one light sends to a surface at x, by Lambert's law.
-fn irradiance<R: Real>(light: &Light, x: V3<R>, normal: V3<R>) -> V3<R> {
-    let zero = R::of(0.0);
-    let (vector, strength) = (V3::of_f32(light.vector), V3::of_f32(light.strength));
-    if light.kind != LIGHT_POINT {
-        return strength.times(normal.dot(vector).max(zero));
-    }
-    let towards = vector - x;
-    let square = towards.dot(towards);
-    if square <= zero {
-        return V3::splat(zero);
-    }
-    let l = towards.over(square.sqrt());
-    strength.over(square).times(normal.dot(l).max(zero))
+/// What light i sends to a surface at x, by Lambert's law: from its centre, unless it is sampled.
+fn irradiance<R: Real>(
+    shading: &Shading<'_>,
+    i: u32,
+    pixel: [u32; 2],
+    x: V3<R>,
+    normal: V3<R>,
+) -> V3<R> {
+    let params = shading.params;
+    let u = if params.sample_index == NONE {
+        [R::of(0.5); 2]
+    } else {
+        let pixel = [0, 1].map(|axis| params.tile_origin[axis] + pixel[axis]);
+        sample_2d(pixel, params.sample_index, params.seed, SAMPLE_LIGHT + i)
+    };
+    let light = sample_light(&shading.lights[i as usize], x, u);
+    light.arriving.times(normal.dot(light.towards).max(R::of(0.0)))
 }
 
-/// What one pixel shows. `hit` comes with its object; `iterations` are those of its refinement.
+/// What one pixel of the tile shows. `hit` comes with its object; `iterations` are those of its
+/// refinement.
 #[must_use]
 pub fn shade<R: Real>(
     ray: &Ray<R>,
     hit: Option<(Hit<R>, u32)>,
     iterations: u32,
+    pixel: [u32; 2],
     shading: &Shading<'_>,
 ) -> FilmPixel {
     let params = shading.params;
@@ -62,11 +69,8 @@ pub fn shade<R: Real>(
         };
     };
     let Hit { position: x, normal, .. } = hit;
-    let light = shading
-        .lights
-        .iter()
-        .take(params.light_count as usize)
-        .fold(V3::splat(R::of(0.0)), |sum, light| sum + irradiance(light, x, normal));
+    let light = (0..params.light_count)
+        .fold(V3::splat(R::of(0.0)), |sum, i| sum + irradiance(shading, i, pixel, x, normal));
     let color = point_color(shading, &shading.objects[object as usize], ray.hit_slot);
     let [r, g, b] = (color * light.times(R::of(std::f64::consts::FRAC_1_PI))).to_f32();
     let [px, py, pz] = x.to_f32();

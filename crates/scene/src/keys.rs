@@ -290,6 +290,14 @@ pub(crate) static LIGHTS: Table = Table {
             Required("[3.0, 3.0, 3.0]"),
             "On a surface that faces the light.",
         ),
+        key_of(
+            "directional",
+            "angle",
+            Kind::Number(numbers(0.0, 179.9, "degrees")),
+            Value("0.0"),
+            "Angle that the light's disc on the sky is wide; the sun's is 0.53. More than 0 makes \
+             soft shadows, with `image.samples` over 1.",
+        ),
         key_of("point", "position", POSITION, Required("[1.0, 2.0, 0.0]"), "In the world."),
         key_of(
             "point",
@@ -298,8 +306,14 @@ pub(crate) static LIGHTS: Table = Table {
             Required("[5.0, 5.0, 5.0]"),
             "Radiant intensity I; the irradiance at distance r is I/r².",
         ),
-        announced("angle", "Angular size of a directional light, for soft shadows."),
-        announced("radius", "Radius of a point light, for soft shadows."),
+        key_of(
+            "point",
+            "radius",
+            Kind::Number(numbers(0.0, LARGE, "scene units")),
+            Value("0.0"),
+            "Radius of the sphere that shines. More than 0 makes soft shadows, with `image.samples` \
+             over 1. Nothing sees the sphere itself.",
+        ),
     ],
 };
 

@@ -235,10 +235,12 @@ impl Light {
             "point" => Self::Point {
                 position: table.vector("position"),
                 intensity: table.vector("intensity"),
+                radius: table.number("radius"),
             },
             _ => Self::Directional {
                 direction: table.vector("direction"),
                 irradiance: table.vector("irradiance"),
+                angle: table.number("angle"),
             },
         }
     }

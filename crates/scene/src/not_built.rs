@@ -39,8 +39,6 @@ pub(crate) const NOT_BUILT: &[NotBuilt] = &[
     value("render.fresnel", When::Is(&["sample"]), "use \"transmit\""),
     value("render.loop", When::Is(&["queue"]), "use \"images\" or \"auto\""),
     key("background.environment"),
-    key("lights.angle"),
-    key("lights.radius"),
     key("objects.filter"),
     key("objects.volume"),
     key("objects.surface.boundary_clip"),

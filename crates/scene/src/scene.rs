@@ -112,6 +112,8 @@ pub enum Light {
         direction: [f64; 3],
         /// On a surface that faces the light, W m⁻², each 0 to 1e15.
         irradiance: [f64; 3],
+        /// Angle between opposite places of its rim in degrees, 0 to 179.9; 0 casts hard shadows.
+        angle: f64,
     },
     /// Light from a point, equal in all directions.
     Point {
@@ -119,6 +121,8 @@ pub enum Light {
         position: [f64; 3],
         /// Radiant intensity I, W sr⁻¹, each 0 to 1e15: irradiance is I/r².
         intensity: [f64; 3],
+        /// Of the sphere that it is, 0 to 1e15; 0 casts hard shadows.
+        radius: f64,
     },
 }
 

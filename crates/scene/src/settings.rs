@@ -57,15 +57,17 @@ fn write_render(out: &mut String, render: &RenderSettings) -> fmt::Result {
 fn write_light(out: &mut String, light: &Light) -> fmt::Result {
     writeln!(out, "\n[[lights]]")?;
     match light {
-        Light::Directional { direction, irradiance } => {
+        Light::Directional { direction, irradiance, angle } => {
             writeln!(out, "kind = \"directional\"")?;
             writeln!(out, "direction = {direction:?}")?;
-            writeln!(out, "irradiance = {irradiance:?}")
+            writeln!(out, "irradiance = {irradiance:?}")?;
+            writeln!(out, "angle = {angle:?}")
         }
-        Light::Point { position, intensity } => {
+        Light::Point { position, intensity, radius } => {
             writeln!(out, "kind = \"point\"")?;
             writeln!(out, "position = {position:?}")?;
-            writeln!(out, "intensity = {intensity:?}")
+            writeln!(out, "intensity = {intensity:?}")?;
+            writeln!(out, "radius = {radius:?}")
         }
     }
 }

@@ -34,11 +34,13 @@ color = [0.1, 0.2, 1e-7]
 kind = "directional"
 direction = [-0.4, -1.0, -0.3]
 irradiance = [3.0, 2.0, 1.0]
+angle = 0.53
 
 [[lights]]
 kind = "point"
 position = [1.0, 2.0, 0.0]
 intensity = [5.0, 6.0, 7.0]
+radius = 0.25
 
 [[objects]]
 name = "the \"knot\" \\ ∂"
@@ -123,8 +125,12 @@ fn every_built_key_is_read() {
     assert_eq!(scene.render, render);
     assert_eq!(scene.background, Background { color: [0.1, 0.2, 1e-7] });
     let lights = [
-        Light::Directional { direction: [-0.4, -1.0, -0.3], irradiance: [3.0, 2.0, 1.0] },
-        Light::Point { position: [1.0, 2.0, 0.0], intensity: [5.0, 6.0, 7.0] },
+        Light::Directional {
+            direction: [-0.4, -1.0, -0.3],
+            irradiance: [3.0, 2.0, 1.0],
+            angle: 0.53,
+        },
+        Light::Point { position: [1.0, 2.0, 0.0], intensity: [5.0, 6.0, 7.0], radius: 0.25 },
     ];
     assert_eq!(scene.lights, lights);
     let knot = Object {
@@ -265,8 +271,6 @@ fn what_is_not_built_says_so_and_is_not_ignored() {
         ("camera.aperture=0.1", "camera.aperture"),
         ("camera.focus=3", "camera.focus"),
         ("camera.projection=fisheye", "camera.projection"),
-        ("lights.0.angle=0.5", "lights[0].angle"),
-        ("lights.1.radius=0.5", "lights[1].radius"),
         ("objects.0.filter=x", "objects[0].filter"),
         ("objects.0.material.kind=mirror", "objects[0].material.kind"),
         ("objects.0.material.ior=1.4", "objects[0].material.ior"),
@@ -303,7 +307,7 @@ fn not_built_list_names_keys_that_exist() {
 #[test]
 fn unknown_keys_name_the_place_and_the_nearest_key() {
     let found = error_where("neighbors = 20", "neighbours = 20");
-    let expected = "scenes/s.toml:43:1: objects[0].surface.neighbours: \
+    let expected = "scenes/s.toml:45:1: objects[0].surface.neighbours: \
                     unknown key; did you mean 'neighbors'?";
     assert_eq!(found, expected);
     for (set, name) in [
@@ -330,7 +334,7 @@ fn unknown_keys_far_from_any_list_the_known_and_name_another_tables() {
 #[test]
 fn error_says_where_what_expected_and_what_to_do() {
     let error = error_where("trust = 0.75", "  trust =   1.7 # b/h");
-    let expected = "scenes/s.toml:46:13: objects[0].surface.trust: found 1.7, \
+    let expected = "scenes/s.toml:48:13: objects[0].surface.trust: found 1.7, \
                     expected a number from 0.5 to 1; lower it or leave it out (default 0.6)";
     assert_eq!(error, expected);
 }
@@ -517,7 +521,7 @@ fn overrides_reach_every_kind_of_place() {
     assert_eq!(scene.objects[0].name, "a b");
     assert_eq!(scene.image.size, [640, 100], "the other element is the default");
     assert_eq!(scene.camera.unwrap().up, [0.5, 1.0, 0.0]);
-    let light = Light::Point { position: [0.0; 3], intensity: [1.0, 1.0, 9.0] };
+    let light = Light::Point { position: [0.0; 3], intensity: [1.0, 1.0, 9.0], radius: 0.0 };
     assert_eq!(scene.lights, [light]);
 }
 
