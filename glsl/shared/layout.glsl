@@ -76,6 +76,8 @@
 #define REFINE_OFFSETS 18
 #define REFINE_POINTS 19
 #define REFINE_OUTCOMES 20
+#define CAMERA_FILTER 21
+#define FILM_SUMS 22
 
 // What has become of a pixel's hit: the low byte of Hit.status.
 #define HIT_NONE 0
@@ -93,6 +95,10 @@
 
 #define LIGHT_DIRECTIONAL 0
 #define LIGHT_POINT 1
+
+#define PERSPECTIVE 0
+#define ORTHOGRAPHIC 1
+#define FILTER_INTERVALS 1024 // of the table that the reconstruction filter is sampled by
 
 // What each two numbers of the low-discrepancy sequence are for (sampler.glsl).
 #define SAMPLE_FILM 0
@@ -165,17 +171,21 @@ struct SortParams {      // 12 bytes
     uint runs;           // 8
 };
 
-struct CameraParams {    // 80 bytes
+struct CameraParams {    // 96 bytes
     vec3 eye;            //  0  centred scene space
-    float scale;         // 12  half the picture's height on the plane at distance 1, over half the rows
+    float scale;         // 12  half the view's height, over half the rows; perspective: at distance 1
     vec3 right;          // 16
     float half_width;    // 28  of the full image, pixels
     vec3 up;             // 32
     float half_height;   // 44  of the full image, pixels
     vec3 forward;        // 48
-    uint pad;            // 60
+    uint sample_index;   // 60  of the pixel; NONE: there is one alone, through its centre
     uvec2 tile_origin;   // 64  in the full image, pixels
     uvec2 tile_size;     // 72
+    uint projection;     // 80  PERSPECTIVE or ORTHOGRAPHIC
+    float lens_radius;   // 84
+    float focus;         // 88  distance of the plane in focus along the viewing axis
+    uint seed;           // 92
 };
 
 struct TraceParams {     // 16 bytes
@@ -192,11 +202,11 @@ struct DepthRanks {      // 16 bytes
     uint bits;           // 12  of a rank
 };
 
-struct DiscParams {      // 104 bytes
+struct DiscParams {      // 120 bytes
     CameraParams camera; //  0
-    DepthRanks ranks;    // 80
-    uint point_count;    // 96
-    uint pair_count;     // 100
+    DepthRanks ranks;    // 96
+    uint point_count;    // 112
+    uint pair_count;     // 116
 };
 
 struct DiscTraceParams { // 28 bytes
@@ -248,5 +258,17 @@ struct FilmPixel {       // 64 bytes
     vec4 position_depth; // 16  centred scene space; distance along the viewing axis
     vec4 normal_object;  // 32  facing the viewer; object, or -1
     uvec4 counts;        // 48  tests, cells, slot of the hit or NONE, iterations
+};
+
+// A pixel's samples so far: sums of colours and of the first two counts; all else is the first's.
+struct FilmSum {         // 80 bytes
+    FilmPixel pixel;     //  0
+    vec4 lost;           // 64  what rounding added to the colours' sums
+};
+
+struct AccumulateParams { // 16 bytes
+    uvec2 tile_size;     //  0
+    uint sample_index;   //  8  of the samples in film
+    uint samples;        // 12  in all
 };
 #endif

@@ -156,10 +156,10 @@ impl Built {
                 })
             }
             BuiltOn::Single(reference) => {
-                Ok(Frame::of_reference(finished(reference.frame(plan, progress))?, started))
+                Ok(Frame::of_reference(plan, finished(reference.frame(plan, progress))?, started))
             }
             BuiltOn::Double(reference) => {
-                Ok(Frame::of_reference(finished(reference.frame(plan, progress))?, started))
+                Ok(Frame::of_reference(plan, finished(reference.frame(plan, progress))?, started))
             }
         }
     }
@@ -199,14 +199,14 @@ impl Built {
 }
 
 impl Frame {
-    fn of_reference(picture: Picture, started: Instant) -> Self {
+    fn of_reference(plan: &Plan, picture: Picture, started: Instant) -> Self {
         let elapsed = started.elapsed();
         let (hits, tests) = (picture.hits, picture.tests);
         let film = picture.finish();
         Self {
             hits,
             tests,
-            camera_rays: film.window.pixels() as u64,
+            camera_rays: film.window.pixels() as u64 * u64::from(plan.samples),
             film,
             passes: 1,
             trace: elapsed,

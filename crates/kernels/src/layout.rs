@@ -152,6 +152,10 @@ constants! {
     REFINE_POINTS = 19;
     /// Binding of `refine`: [`FitOutcome`]s.
     REFINE_OUTCOMES = 20;
+    /// Binding of `camera_rays`: where the reconstruction filter's integral takes equal steps.
+    CAMERA_FILTER = 21;
+    /// Binding of `accumulate`: [`FilmSum`]s.
+    FILM_SUMS = 22;
     /// A pixel that hit nothing.
     HIT_NONE = 0;
     /// A hit that stands.
@@ -177,6 +181,12 @@ constants! {
     LIGHT_DIRECTIONAL = 0;
     /// A light at a point.
     LIGHT_POINT = 1;
+    /// Rays from one place, or through one place of the lens.
+    PERSPECTIVE = 0;
+    /// Parallel rays.
+    ORTHOGRAPHIC = 1;
+    /// Intervals of the table that the reconstruction filter is sampled by.
+    FILTER_INTERVALS = 1024;
     /// Numbers of the low-discrepancy sequence for the place on the film.
     SAMPLE_FILM = 0;
     /// For the place on the lens.
@@ -340,7 +350,7 @@ gpu_layout!(SortParams, 12, { count: 0, shift: 4, runs: 8 });
 pub struct CameraParams {
     /// Centred scene space.
     pub eye: [f32; 3],
-    /// Size of a pixel on the plane at distance 1.
+    /// Size of a pixel: on the plane at distance 1, or, where rays are parallel, anywhere.
     pub scale: f32,
     /// Unit vector to the right.
     pub right: [f32; 3],
@@ -352,16 +362,26 @@ pub struct CameraParams {
     pub half_height: f32,
     /// Unit vector of the viewing axis.
     pub forward: [f32; 3],
-    /// Unused.
-    pub pad: u32,
+    /// Which sample of its pixel; `NONE` where there is one alone, through the pixel's centre and the
+    /// lens's.
+    pub sample_index: u32,
     /// The tile's first pixel in the full image.
     pub tile_origin: [u32; 2],
     /// Columns and rows of the tile.
     pub tile_size: [u32; 2],
+    /// `PERSPECTIVE` or `ORTHOGRAPHIC`.
+    pub projection: u32,
+    /// 0: a pinhole.
+    pub lens_radius: f32,
+    /// Distance along the viewing axis of the plane in focus, greater than 0.
+    pub focus: f32,
+    /// Of all that is random.
+    pub seed: u32,
 }
-gpu_layout!(CameraParams, 80, {
-    eye: 0, scale: 12, right: 16, half_width: 28, up: 32, half_height: 44, forward: 48, pad: 60,
-    tile_origin: 64, tile_size: 72,
+gpu_layout!(CameraParams, 96, {
+    eye: 0, scale: 12, right: 16, half_width: 28, up: 32, half_height: 44, forward: 48,
+    sample_index: 60, tile_origin: 64, tile_size: 72, projection: 80, lens_radius: 84, focus: 88,
+    seed: 92,
 });
 
 /// Push constants of `grid_trace`.
@@ -405,7 +425,7 @@ pub struct DiscParams {
     /// Pairs of a screen tile and a point whose disc covers it.
     pub pair_count: u32,
 }
-gpu_layout!(DiscParams, 104, { camera: 0, ranks: 80, point_count: 96, pair_count: 100 });
+gpu_layout!(DiscParams, 120, { camera: 0, ranks: 96, point_count: 112, pair_count: 116 });
 
 /// Push constants of `disc_trace`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -522,6 +542,30 @@ pub struct FilmPixel {
 }
 gpu_layout!(FilmPixel, 64, { color: 0, position_depth: 16, normal_object: 32, counts: 48 });
 
+/// A pixel's samples so far.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct FilmSum {
+    /// Sums of colours and of the first two counts; all else is the first sample's.
+    pub pixel: FilmPixel,
+    /// What rounding added to the colours' sums.
+    pub lost: [f32; 4],
+}
+gpu_layout!(FilmSum, 80, { pixel: 0, lost: 64 });
+
+/// Push constants of `accumulate`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct AccumulateParams {
+    /// Columns and rows of the tile.
+    pub tile_size: [u32; 2],
+    /// Which sample the film holds.
+    pub sample_index: u32,
+    /// In all.
+    pub samples: u32,
+}
+gpu_layout!(AccumulateParams, 16, { tile_size: 0, sample_index: 8, samples: 12 });
+
 /// Every struct that host and kernels share.
 pub const STRUCTS: &[StructLayout] = &[
     Point::LAYOUT,
@@ -543,4 +587,6 @@ pub const STRUCTS: &[StructLayout] = &[
     Light::LAYOUT,
     Hit::LAYOUT,
     FilmPixel::LAYOUT,
+    FilmSum::LAYOUT,
+    AccumulateParams::LAYOUT,
 ];

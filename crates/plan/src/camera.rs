@@ -1,7 +1,7 @@
 //! The view: where rays start, which way they go, and the matrices that say so in an EXR.
 
 use glam::{DMat4, DVec3, DVec4};
-use kernels::layout::CameraParams;
+use kernels::layout::{CameraParams, NONE, PERSPECTIVE};
 use scene::{Camera, Up};
 
 /// Direction from the points to the eye, for +y up.
@@ -117,9 +117,13 @@ impl View {
             up: up.as_vec3().into(),
             half_height: (0.5 * height) as f32,
             forward: forward.as_vec3().into(),
-            pad: 0,
+            sample_index: NONE,
             tile_origin: [0, 0],
             tile_size: [0, 0],
+            projection: PERSPECTIVE,
+            lens_radius: 0.0,
+            focus: 1.0,
+            seed: 0,
         };
         // glam's columns, read as rows, are the row vectors' matrix.
         let camera_axes = DMat4::from_cols(

@@ -8,6 +8,7 @@
 mod camera;
 mod diagnostic;
 mod discs;
+mod filter;
 mod isolated;
 mod picture;
 
@@ -60,9 +61,13 @@ pub struct Plan {
     pub cells_per_pass: u32,
     /// How camera rays find their first hit. Changes no pixel.
     pub primary: Primary,
-    /// Parameters of `camera_rays`, but for the tile.
+    /// Rays a pixel; one alone goes through its centre.
+    pub samples: u32,
+    /// Where the reconstruction filter's integral takes equal steps, in pixels from a pixel's centre.
+    pub filter: Vec<f32>,
+    /// Parameters of `camera_rays`, but for tile and sample.
     pub camera: CameraParams,
-    /// Parameters of `shade`, but for the tile.
+    /// Parameters of `shade`, but for tile and sample.
     pub shade: ShadeParams,
     /// What shading needs of each object.
     pub objects: Vec<ObjectInfo>,
@@ -168,7 +173,9 @@ impl Plan {
             grid_resolution: scene.render.grid_resolution,
             cells_per_pass: scene.render.cells_per_pass,
             primary: scene.render.primary,
-            camera: view.params,
+            samples: scene.image.samples,
+            filter: filter::steps(scene.image.filter, scene.image.filter_width),
+            camera: CameraParams { seed: scene.render.seed, ..view.params },
             shade: ShadeParams {
                 forward: view.params.forward,
                 light_count: scene.lights.len() as u32,
@@ -220,16 +227,23 @@ impl Plan {
             .collect()
     }
 
-    /// Parameters of `camera_rays` for one tile.
+    /// Parameters of `camera_rays` for one sample of one tile.
     #[must_use]
-    pub fn camera_of(&self, tile: &Window) -> CameraParams {
-        CameraParams { tile_origin: tile.origin, tile_size: tile.size, ..self.camera }
+    pub fn camera_of(&self, tile: &Window, sample: u32) -> CameraParams {
+        let sample_index = self.sample_index(sample);
+        CameraParams { tile_origin: tile.origin, tile_size: tile.size, sample_index, ..self.camera }
     }
 
-    /// Parameters of `shade` for one tile.
+    /// Parameters of `shade` for one sample of one tile.
     #[must_use]
-    pub fn shade_of(&self, tile: &Window) -> ShadeParams {
-        ShadeParams { tile_size: tile.size, tile_origin: tile.origin, ..self.shade }
+    pub fn shade_of(&self, tile: &Window, sample: u32) -> ShadeParams {
+        let sample_index = self.sample_index(sample);
+        ShadeParams { tile_size: tile.size, tile_origin: tile.origin, sample_index, ..self.shade }
+    }
+
+    /// As kernels take it: the one sample of a pixel is none of a sequence.
+    fn sample_index(&self, sample: u32) -> u32 {
+        if self.samples > 1 { sample } else { NONE }
     }
 
     /// An empty picture, to be filled tile by tile.

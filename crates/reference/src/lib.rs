@@ -4,6 +4,7 @@
 //! in f64 it says how far both are from the truth. It is also what renders where no Vulkan exists.
 #![forbid(unsafe_code)]
 
+pub mod accumulate;
 mod batch;
 pub mod blend;
 pub mod camera_rays;
@@ -27,6 +28,7 @@ pub mod sampler;
 pub mod shade;
 pub mod surface_hit;
 
+use accumulate::accumulate;
 use camera_rays::Ray;
 use disc_bin::{DiscLists, disc_bin};
 use disc_trace::disc_trace;
@@ -117,24 +119,44 @@ impl<R: Real> Reference<R> {
     #[must_use]
     pub fn frame(&self, plan: &Plan, watch: &dyn Watch) -> Option<Picture> {
         let mut picture = plan.picture();
-        watch.stage("tracing", plan.window.pixels() as u64);
+        watch.stage("tracing", plan.window.pixels() as u64 * u64::from(plan.samples));
         let mut done = 0;
         for tile in plan.tiles() {
             let discs = self.bin_discs(plan, &tile);
             for first in (0..tile.size[1]).step_by(ROWS) {
-                if watch.interrupted() {
-                    return None;
-                }
                 let rows = Window {
                     origin: [tile.origin[0], tile.origin[1] + first],
                     size: [tile.size[0], (ROWS as u32).min(tile.size[1] - first)],
                 };
-                picture.put(plan, &self.outcomes, &rows, &self.trace(plan, &rows, discs.as_ref()));
-                done += rows.pixels() as u64;
-                watch.done(done);
+                let pixels = self.sampled(plan, &rows, discs.as_ref(), watch, &mut done)?;
+                picture.put(plan, &self.outcomes, &rows, &pixels);
             }
         }
         Some(picture)
+    }
+
+    /// The pixels of one window with all their samples; `done` counts rays.
+    fn sampled(
+        &self,
+        plan: &Plan,
+        window: &Window,
+        discs: Option<&DiscLists>,
+        watch: &dyn Watch,
+        done: &mut u64,
+    ) -> Option<Vec<FilmPixel>> {
+        let (mut pixels, mut sums) = (Vec::new(), Vec::new());
+        for sample in 0..plan.samples {
+            if watch.interrupted() {
+                return None;
+            }
+            pixels = self.trace(plan, window, sample, discs);
+            if plan.samples > 1 {
+                accumulate(&mut sums, &mut pixels, sample, plan.samples);
+            }
+            *done += window.pixels() as u64;
+            watch.done(*done);
+        }
+        Some(pixels)
     }
 
     /// The points of each screen tile of a tile of the picture, if it is to be traced by discs and
@@ -145,12 +167,18 @@ impl<R: Real> Reference<R> {
         plan.by_discs(tile).then(|| disc_bin(&params, &self.polynomials)).flatten()
     }
 
-    /// The pixels of one window, row by row; through the grid, or, inside a tile of the picture
-    /// whose discs are given, by them.
+    /// One sample of the pixels of one window, row by row; through the grid, or, inside a tile of the
+    /// picture whose discs are given, by them.
     #[must_use]
-    pub fn trace(&self, plan: &Plan, window: &Window, discs: Option<&DiscLists>) -> Vec<FilmPixel> {
+    pub fn trace(
+        &self,
+        plan: &Plan,
+        window: &Window,
+        sample: u32,
+        discs: Option<&DiscLists>,
+    ) -> Vec<FilmPixel> {
         let grid = Grid::<R>::from(&self.grid);
-        let (camera, params) = (plan.camera_of(window), plan.shade_of(window));
+        let (camera, params) = (plan.camera_of(window, sample), plan.shade_of(window, sample));
         let shading = shade::Shading {
             params: &params,
             objects: &plan.objects,
@@ -161,7 +189,7 @@ impl<R: Real> Reference<R> {
             .into_par_iter()
             .map(|i| {
                 let pixel = [i % window.size[0], i / window.size[0]];
-                let mut ray = camera_rays::camera_ray(&camera, &grid, pixel);
+                let mut ray = camera_rays::camera_ray(&camera, &plan.filter, &grid, pixel);
                 match discs {
                     Some(discs) => {
                         let in_picture = [0, 1].map(|axis| window.origin[axis] + pixel[axis]);

@@ -6,6 +6,7 @@ use crate::passes::{
     CameraRays, DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Records, Refine, RefineIo, Shade,
     ShadeIo, SurfaceHit, SurfaceHitIo,
 };
+use crate::samples::Samples;
 use crate::state::RayState;
 use gpu::{Buffer, Device, Recorder, Timings};
 use kernels::layout::{FilmPixel, Hit, TraceParams};
@@ -56,7 +57,9 @@ pub struct Renderer {
     objects: Buffer,
     colors: Buffer,
     lights: Buffer,
+    filter: Buffer,
     film: Buffer,
+    samples: Samples,
     hits: Buffer,
     live: Buffer,
     state: RayState,
@@ -107,7 +110,9 @@ impl Renderer {
             objects: Buffer::from_slice(device, "objects", &plan.objects)?,
             colors: Buffer::from_slice(device, "point colors", &plan.colors)?,
             lights: Buffer::from_slice(device, "lights", &plan.lights)?,
+            filter: Buffer::from_slice(device, "filter", &plan.filter)?,
             film: Buffer::new(device, "film", film_bytes)?,
+            samples: Samples::new(device, plan, tile_pixels)?,
             hits: Buffer::new(device, "hits", tile_pixels * size_of::<Hit>() as u64)?,
             live: Buffer::new(device, "live rays", 8)?,
             state: RayState::new(device, tile_size)?,
@@ -145,32 +150,50 @@ impl Renderer {
     ) -> Result<(Picture, FrameStats), RenderError> {
         let mut picture = plan.picture();
         let mut stats = FrameStats::default();
-        watch.stage("tracing", plan.window.pixels() as u64);
+        watch.stage("tracing", plan.window.pixels() as u64 * u64::from(plan.samples));
         let mut pixels =
             vec![EMPTY_PIXEL; (self.film.bytes() / size_of::<FilmPixel>() as u64) as usize];
         for tile in plan.tiles() {
             let started = Instant::now();
-            self.start_rays(plan, &tile);
-            let by_discs = self.bin_discs(plan, &tile, &mut stats)?;
-            self.trace_to_the_end(plan, &tile, by_discs, &mut stats, watch)?;
-            self.settle_hits(plan, &tile, &mut stats, watch)?;
-            self.shade_tile(plan, &tile, &mut stats)?;
+            for sample in 0..plan.samples {
+                self.trace_sample(plan, &tile, sample, &mut stats, watch)?;
+                watch.done(stats.camera_rays);
+            }
             stats.trace += started.elapsed();
-            stats.camera_rays += tile.pixels() as u64;
             let pixels = &mut pixels[..tile.pixels()];
             self.film.read(0, pixels)?;
             picture.put(plan, &self.surfaces.outcomes, &tile, pixels);
-            watch.done(stats.camera_rays);
         }
         Ok((picture, stats))
     }
 
-    fn start_rays(&mut self, plan: &Plan, tile: &Window) {
+    /// One ray a pixel from the camera to the film, which after the last sample holds the mean of all.
+    fn trace_sample(
+        &mut self,
+        plan: &Plan,
+        tile: &Window,
+        sample: u32,
+        stats: &mut FrameStats,
+        watch: &dyn Watch,
+    ) -> Result<(), RenderError> {
+        self.start_rays(plan, tile, sample);
+        let by_discs = self.bin_discs(plan, tile, stats)?;
+        self.trace_to_the_end(plan, tile, by_discs, stats, watch)?;
+        self.settle_hits(plan, tile, stats, watch)?;
+        self.record_shading(plan, tile, sample);
+        self.samples.record(&mut self.recorder, &self.film, plan, tile, sample);
+        stats.add_kernels(&self.recorder.submit()?.passes);
+        stats.camera_rays += tile.pixels() as u64;
+        Ok(())
+    }
+
+    fn start_rays(&mut self, plan: &Plan, tile: &Window, sample: u32) {
         self.camera_rays.record(
             &mut self.recorder,
             &self.surfaces.grid_info,
+            &self.filter,
             &self.state.current,
-            &plan.camera_of(tile),
+            &plan.camera_of(tile, sample),
         );
     }
 
@@ -302,12 +325,7 @@ impl Renderer {
         Ok(counts)
     }
 
-    fn shade_tile(
-        &mut self,
-        plan: &Plan,
-        tile: &Window,
-        stats: &mut FrameStats,
-    ) -> Result<(), RenderError> {
+    fn record_shading(&mut self, plan: &Plan, tile: &Window, sample: u32) {
         let io = ShadeIo {
             state: &self.state.current,
             polynomials: &self.surfaces.polynomials,
@@ -317,8 +335,6 @@ impl Renderer {
             lights: &self.lights,
             film: &self.film,
         };
-        self.shade.record(&mut self.recorder, io, &plan.shade_of(tile));
-        stats.add_kernels(&self.recorder.submit()?.passes);
-        Ok(())
+        self.shade.record(&mut self.recorder, io, &plan.shade_of(tile, sample));
     }
 }

@@ -161,7 +161,6 @@ impl When {
         match (self, value) {
             (When::Present, _) => true,
             (When::Is(names), Value::Text(text)) => names.contains(&text.as_str()),
-            (When::Above(limit), Value::Integer(integer)) => *integer > i128::from(*limit),
             _ => false,
         }
     }

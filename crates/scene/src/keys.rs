@@ -189,7 +189,26 @@ pub(crate) static IMAGE: Table = Table {
             "samples",
             count(1, 65_536, "rays a pixel"),
             Value("1"),
-            "1 is one ray through each pixel's centre, without jitter.",
+            "1 is one ray through each pixel's centre, without jitter. With more, the colours and `A` \
+             are means over rays about the centre, which smooths edges; `Z`, `P`, `N` and `object` are \
+             the first ray's.",
+        ),
+        key(
+            "filter",
+            Kind::Choice(&["gaussian", "triangle", "box"]),
+            Value("\"gaussian\""),
+            "How the rays of a pixel lie about its centre along each axis, where it has several: \
+             normally distributed and cut at three standard deviations, thinning out evenly, or \
+             evenly.",
+        ),
+        key(
+            "filter_width",
+            Kind::Number(numbers(0.1, 16.0, "pixels")),
+            Words(
+                "3 for gaussian (half a pixel a standard deviation), 2 for triangle, 1 for box",
+                "3.0",
+            ),
+            "Side of the square about the pixel's centre that its rays lie in.",
         ),
         key(
             "transparent",
@@ -245,7 +264,8 @@ pub(crate) static RENDER: Table = Table {
             Value("\"auto\""),
             "How camera rays find their first hit: cell after cell of the grid, or each tile of \
              pixels among the points whose discs cover it. `auto` takes discs for up to 4 points a \
-             pixel, unless cells are limited or counted. Changes no pixel.",
+             pixel, unless cells are limited or counted. Several samples a pixel and orthographic \
+             views always take the grid. Changes no pixel.",
         ),
     ],
 };

@@ -5,9 +5,9 @@ use crate::error::{Problem, Source};
 use crate::keys::{self, SCENE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
-    Albedo, Background, Camera, FeatureSize, Fresnel, ImageSettings, Light, Material, Normals,
-    Object, Polynomial, Primary, RayLoop, Refine, RenderSettings, Scene, SceneError, Surface,
-    Transform, Up,
+    Albedo, Background, Camera, FeatureSize, Filter, Fresnel, ImageSettings, Light, Material,
+    Normals, Object, Polynomial, Primary, RayLoop, Refine, RenderSettings, Scene, SceneError,
+    Surface, Transform, Up,
 };
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -193,6 +193,12 @@ impl ImageSettings {
         Self {
             size: table.counts("size"),
             samples: table.count("samples"),
+            filter: match table.text("filter").as_str() {
+                "triangle" => Filter::Triangle,
+                "box" => Filter::Box,
+                _ => Filter::Gaussian,
+            },
+            filter_width: table.written("filter_width").map(|_| table.number("filter_width")),
             transparent: table.flag("transparent"),
         }
     }

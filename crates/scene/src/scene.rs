@@ -36,14 +36,30 @@ pub struct Camera {
 }
 
 /// Size and sampling of the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImageSettings {
     /// Width and height in pixels, each 1 to 16384.
     pub size: [u32; 2],
     /// Rays a pixel, 1 to 65536. 1 is a ray through each pixel's centre.
     pub samples: u32,
+    /// How a pixel's samples lie about its centre, where it has several.
+    pub filter: Filter,
+    /// Side in pixels of the square that they lie in, 0.1 to 16; `None` is 1 for the box, 2 for the
+    /// triangle and 3 for the Gaussian.
+    pub filter_width: Option<f64>,
     /// Leave the background out and premultiply the colours by coverage.
     pub transparent: bool,
+}
+
+/// How a pixel's samples lie about its centre, along each axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Filter {
+    /// Normally distributed, cut at three standard deviations.
+    Gaussian,
+    /// Thinning out evenly towards the edges.
+    Triangle,
+    /// Evenly.
+    Box,
 }
 
 /// How rays are followed.

@@ -1,8 +1,8 @@
 //! A scene as canonical TOML, for the header of the pictures it makes.
 
 use crate::{
-    Albedo, FeatureSize, Fresnel, Light, Normals, Object, Polynomial, Refine, RenderSettings,
-    Scene, Surface,
+    Albedo, FeatureSize, Filter, Fresnel, Light, Normals, Object, Polynomial, Refine,
+    RenderSettings, Scene, Surface,
 };
 use std::fmt::{self, Write};
 
@@ -28,6 +28,15 @@ impl Scene {
         writeln!(out, "[image]")?;
         writeln!(out, "size = {:?}", self.image.size)?;
         writeln!(out, "samples = {}", self.image.samples)?;
+        let filter = match self.image.filter {
+            Filter::Gaussian => "gaussian",
+            Filter::Triangle => "triangle",
+            Filter::Box => "box",
+        };
+        writeln!(out, "filter = \"{filter}\"")?;
+        if let Some(width) = self.image.filter_width {
+            writeln!(out, "filter_width = {width:?}")?;
+        }
         writeln!(out, "transparent = {}\n", self.image.transparent)?;
         write_render(out, &self.render)?;
         writeln!(out, "[background]")?;

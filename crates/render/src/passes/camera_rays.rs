@@ -3,11 +3,11 @@
 use super::{bind_state, over_pixels, state_bindings};
 use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
-use kernels::layout::{CameraParams, STATE_OUT, TRACE_INFO};
+use kernels::layout::{CAMERA_FILTER, CameraParams, STATE_OUT, TRACE_INFO};
 use kernels::spirv;
 use std::sync::Arc;
 
-/// The ray through each pixel's centre, in the first cell that it meets.
+/// The camera's ray of each pixel, in the first cell that it meets.
 pub(crate) struct CameraRays {
     kernel: Kernel,
 }
@@ -17,7 +17,7 @@ impl CameraRays {
 
     pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
         let mut bindings = state_bindings(STATE_OUT).to_vec();
-        bindings.push((TRACE_INFO, Binding::StorageBuffer));
+        bindings.extend([TRACE_INFO, CAMERA_FILTER].map(|at| (at, Binding::StorageBuffer)));
         let params = size_of::<CameraParams>();
         let kernel = Kernel::new(device, Self::NAME, &spirv::camera_rays(), &bindings, params)?;
         Ok(Self { kernel })
@@ -28,11 +28,13 @@ impl CameraRays {
         &self,
         rec: &mut Recorder,
         grid_info: &Buffer,
+        filter: &Buffer,
         out: &StateImages,
         params: &CameraParams,
     ) {
         bind_state(rec.pass(Self::NAME, &self.kernel), STATE_OUT, out)
             .buffer(TRACE_INFO, grid_info)
+            .buffer(CAMERA_FILTER, filter)
             .push(params)
             .dispatch(over_pixels(params.tile_size));
     }
