@@ -155,8 +155,7 @@ pub(crate) static SCENE: Table = Table {
 
 pub(crate) static CAMERA: Table = Table {
     header: "[camera]",
-    doc: "A pinhole camera with square pixels, row 0 at the top. Left out, the view is framed on \
-          the objects.",
+    doc: "A camera with square pixels, row 0 at the top. Left out, the view is framed on the objects.",
     whole: Some(camera_has_a_view),
     keys: &[
         key("eye", POSITION, Required("[0.0, 0.4, 3.0]"), "Where the camera is, in the world."),
@@ -171,11 +170,34 @@ pub(crate) static CAMERA: Table = Table {
             "vertical_fov",
             Kind::Number(numbers(0.001, 179.0, "degrees")),
             Value("35.0"),
-            "Angle between the lower and the upper edge of the picture.",
+            "Perspective only: angle between the lower and the upper edge of the picture.",
         ),
-        announced("aperture", "Size of the lens opening, for depth of field."),
-        announced("focus", "Distance that is sharp, for depth of field."),
-        announced("projection", "Other projections than the perspective one."),
+        key(
+            "projection",
+            Kind::Choice(&["perspective", "orthographic"]),
+            Value("\"perspective\""),
+            "Rays from the eye, or parallel ones from the plane through the eye across the line of \
+             sight.",
+        ),
+        key(
+            "height",
+            LENGTH,
+            Words("none; required where the projection is orthographic", "2.0"),
+            "Orthographic only: height of what the picture shows.",
+        ),
+        key(
+            "aperture",
+            Kind::Number(numbers(0.0, LARGE, "scene units")),
+            Value("0.0"),
+            "Diameter of the lens; what is out of focus is blurred, with `image.samples` over 1. 0 is a \
+             pinhole: everything is sharp. At most 1000 times the distance in focus.",
+        ),
+        key(
+            "focus",
+            LENGTH,
+            Words("the distance from eye to target", "3.0"),
+            "Distance of the plane in focus from the eye, along the line of sight.",
+        ),
     ],
 };
 

@@ -6,8 +6,8 @@ use crate::keys::{self, SCENE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
     Albedo, Background, Camera, FeatureSize, Filter, Fresnel, ImageSettings, Light, Material,
-    Normals, Object, Polynomial, Primary, RayLoop, Refine, RenderSettings, Scene, SceneError,
-    Surface, Transform, Up,
+    Normals, Object, Polynomial, Primary, Projection, RayLoop, Refine, RenderSettings, Scene,
+    SceneError, Surface, Transform, Up,
 };
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -183,7 +183,12 @@ impl Camera {
             eye: table.vector("eye"),
             target: table.vector("target"),
             up: table.vector("up"),
-            vertical_fov: table.number("vertical_fov"),
+            projection: match table.text("projection").as_str() {
+                "orthographic" => Projection::Orthographic { height: table.number("height") },
+                _ => Projection::Perspective { vertical_fov: table.number("vertical_fov") },
+            },
+            aperture: table.number("aperture"),
+            focus: table.written("focus").map(|_| table.number("focus")),
         }
     }
 }

@@ -30,9 +30,6 @@ const fn value(path: &'static str, when: When, instead: &'static str) -> NotBuil
 
 /// The whole list.
 pub(crate) const NOT_BUILT: &[NotBuilt] = &[
-    key("camera.aperture"),
-    key("camera.focus"),
-    key("camera.projection"),
     value("render.fresnel", When::Is(&["sample"]), "use \"transmit\""),
     value("render.loop", When::Is(&["queue"]), "use \"images\" or \"auto\""),
     key("background.environment"),

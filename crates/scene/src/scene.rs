@@ -22,7 +22,7 @@ pub struct Scene {
     pub objects: Vec<Object>,
 }
 
-/// A pinhole camera. `eye` and `target` differ, and `up` is not parallel to the line of sight.
+/// A camera. `eye` and `target` differ, and `up` is not parallel to the line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     /// World position, each -1e15 to 1e15.
@@ -31,8 +31,27 @@ pub struct Camera {
     pub target: [f64; 3],
     /// World direction that is upwards in the picture, any length from 1e-12.
     pub up: [f64; 3],
-    /// Angle between the lower and the upper edge in degrees, 0.001 to 179.
-    pub vertical_fov: f64,
+    /// How the scene comes onto the picture.
+    pub projection: Projection,
+    /// Diameter of the lens, 0 to 1e15 and at most 1000 times the distance in focus; 0: a pinhole.
+    pub aperture: f64,
+    /// Distance along the viewing axis of the plane in focus, 1e-12 to 1e15; `None`: the target's.
+    pub focus: Option<f64>,
+}
+
+/// How the scene comes onto the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Projection {
+    /// Towards the eye.
+    Perspective {
+        /// Angle between the lower and the upper edge in degrees, 0.001 to 179.
+        vertical_fov: f64,
+    },
+    /// By parallels to the viewing axis.
+    Orthographic {
+        /// Distance of the lower edge from the upper, 1e-12 to 1e15.
+        height: f64,
+    },
 }
 
 /// Size and sampling of the picture.

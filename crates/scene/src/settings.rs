@@ -1,7 +1,7 @@
 //! A scene as canonical TOML, for the header of the pictures it makes.
 
 use crate::{
-    Albedo, FeatureSize, Filter, Fresnel, Light, Normals, Object, Polynomial, Refine,
+    Albedo, FeatureSize, Filter, Fresnel, Light, Normals, Object, Polynomial, Projection, Refine,
     RenderSettings, Scene, Surface,
 };
 use std::fmt::{self, Write};
@@ -23,7 +23,21 @@ impl Scene {
             writeln!(out, "eye = {:?}", camera.eye)?;
             writeln!(out, "target = {:?}", camera.target)?;
             writeln!(out, "up = {:?}", camera.up)?;
-            writeln!(out, "vertical_fov = {:?}\n", camera.vertical_fov)?;
+            match camera.projection {
+                Projection::Perspective { vertical_fov } => {
+                    writeln!(out, "projection = \"perspective\"")?;
+                    writeln!(out, "vertical_fov = {vertical_fov:?}")?;
+                }
+                Projection::Orthographic { height } => {
+                    writeln!(out, "projection = \"orthographic\"")?;
+                    writeln!(out, "height = {height:?}")?;
+                }
+            }
+            writeln!(out, "aperture = {:?}", camera.aperture)?;
+            if let Some(focus) = camera.focus {
+                writeln!(out, "focus = {focus:?}")?;
+            }
+            writeln!(out)?;
         }
         writeln!(out, "[image]")?;
         writeln!(out, "size = {:?}", self.image.size)?;

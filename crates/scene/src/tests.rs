@@ -11,7 +11,10 @@ const FULL: &str = r#"# full
 eye = [0.0, 0.4, 3]
 target = [0.1, 0.2, -0.3]
 up = [0.0, 0.0, 2.0]
+projection = "perspective"
 vertical_fov = 50
+aperture = 0.02
+focus = 2.5
 
 [image]
 size = [320, 200]
@@ -97,6 +100,11 @@ fn error(text: &str) -> String {
     error_with(text, &[])
 }
 
+/// FULL with the other projection.
+fn orthographic() -> String {
+    FULL.replace("\"perspective\"", "\"orthographic\"").replace("vertical_fov = 50", "height = 1.5")
+}
+
 /// Where in FULL a line stands, from 1.
 fn line_of(line: &str) -> usize {
     1 + FULL.lines().position(|other| other == line).unwrap()
@@ -116,7 +124,9 @@ fn every_built_key_is_read() {
         eye: [0.0, 0.4, 3.0],
         target: [0.1, 0.2, -0.3],
         up: [0.0, 0.0, 2.0],
-        vertical_fov: 50.0,
+        projection: Projection::Perspective { vertical_fov: 50.0 },
+        aperture: 0.02,
+        focus: Some(2.5),
     };
     assert_eq!(scene.camera, Some(camera));
     let image = ImageSettings {
@@ -209,7 +219,9 @@ fn what_is_left_out_is_the_contracts_default() {
     assert_eq!((scene.image, scene.render), (ImageSettings::default(), RenderSettings::default()));
     let camera = "[camera]\neye = [0, 0, 1]\ntarget = [0, 0, 0]\n";
     let camera = read(&format!("{camera}{SMALL}")).unwrap().camera.unwrap();
-    assert_eq!((camera.up, camera.vertical_fov), ([0.0, 1.0, 0.0], 35.0));
+    assert_eq!(camera.up, [0.0, 1.0, 0.0]);
+    assert_eq!(camera.projection, Projection::Perspective { vertical_fov: 35.0 });
+    assert_eq!((camera.aperture, camera.focus), (0.0, None));
 }
 
 /// The example of the contract uses everything that is planned, so nothing in it may be unknown.
@@ -288,9 +300,6 @@ fn what_is_not_built_says_so_and_is_not_ignored() {
         ("render.fresnel=sample", "render.fresnel"),
         ("render.loop=queue", "render.loop"),
         ("background.environment=sky.exr", "background.environment"),
-        ("camera.aperture=0.1", "camera.aperture"),
-        ("camera.focus=3", "camera.focus"),
-        ("camera.projection=fisheye", "camera.projection"),
         ("objects.0.filter=x", "objects[0].filter"),
         ("objects.0.material.kind=mirror", "objects[0].material.kind"),
         ("objects.0.material.ior=1.4", "objects[0].material.ior"),
@@ -478,6 +487,32 @@ fn a_camera_needs_a_view() {
 }
 
 #[test]
+fn each_projection_has_its_own_extent() {
+    let scene = read(&orthographic()).unwrap();
+    let camera = scene.camera.unwrap();
+    assert_eq!(camera.projection, Projection::Orthographic { height: 1.5 });
+    // What it writes, it reads.
+    let again = Scene::from_toml(&scene.settings_toml(), Path::new("scenes/s.toml"), &[]).unwrap();
+    assert_eq!(again.camera, Some(camera));
+    let missing = error(&orthographic().replace("height = 1.5\n", ""));
+    assert!(missing.contains("camera.height: missing, expected the height"), "{missing}");
+    let foreign = error(&orthographic().replace("height = 1.5", "vertical_fov = 50"));
+    assert!(foreign.contains("camera.vertical_fov: belongs to projection \"perspective\""));
+    let foreign = error_where("vertical_fov = 50", "height = 1.5");
+    assert!(foreign.contains("camera.height: belongs to projection \"orthographic\""), "{foreign}");
+    assert!(error_with(FULL, &["camera.projection=fisheye"]).contains("camera.projection: found"));
+}
+
+#[test]
+fn a_lens_is_not_much_wider_than_its_focus_is_far() {
+    let wide = error_with(FULL, &["camera.aperture=2501"]);
+    assert!(wide.contains("camera.aperture: found 2501 scene units with a focus at 2.5"), "{wide}");
+    assert!(read_with(FULL, &["camera.aperture=2500"]).is_ok());
+    let near = error_with(FULL, &["camera.focus=0"]);
+    assert!(near.contains("camera.focus: found 0, expected a number from 1e-12"), "{near}");
+}
+
+#[test]
 fn all_problems_are_reported_in_the_order_of_the_file() {
     let text = FULL.replace("trust = 0.75", "trust = 7").replace("seed = ", "sead = ");
     let error = read_with(&text, &["image.samples=0"]).unwrap_err();
@@ -611,7 +646,9 @@ fn settings_state_every_built_key() {
     }
     let mut keys = Vec::new();
     names(&SCENE, "", &mut keys);
-    let settings = read(FULL).unwrap().settings_toml();
+    // No camera has the keys of both projections.
+    let settings =
+        read(FULL).unwrap().settings_toml() + &read(&orthographic()).unwrap().settings_toml();
     for (name, path) in keys {
         let stated = settings.lines().any(|line| line.starts_with(&format!("{name} = ")));
         let unseen =
