@@ -40,7 +40,7 @@ impl Tone {
             ToneCurve::Reinhard => c / (1.0 + c),
             ToneCurve::Aces => (c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14),
         };
-        shown.min(1.0) as f32
+        shown.clamp(0.0, 1.0) as f32
     }
 }
 
