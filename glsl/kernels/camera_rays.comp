@@ -1,15 +1,21 @@
-// camera_rays: the ray through each pixel's centre, in the first cell that it meets.
+// camera_rays: the camera's ray of each pixel, in the first cell that it meets (method, section 6).
 //
 // reads   grid
+//         filter_steps     where the integral of the reconstruction filter takes equal steps, in pixels
+//                          from the centre of a pixel
 // writes  the ray state, paths   every pixel, and rays that are none where the tile ends before its
 //                          last workgroup does
 // runs    one invocation per pixel of the tile
 // twin    crates/reference/src/camera_rays.rs
+//
+// The one ray of a pixel goes through the pixel's centre and the lens's. One of many goes through a
+// place that is drawn from the filter, so that all count alike (Ernst, Stamminger and Greiner 2006).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_WRITES
 #include "layout.glsl"
 #include "math.glsl"
+#include "sampler.glsl"
 #include "grid.glsl"
 #include "state.glsl"
 #include "index.glsl"
@@ -17,7 +23,15 @@
 layout(local_size_x = TILE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = WAVE_PATHS) writeonly buffer Paths { Path paths[]; };
+layout(std430, binding = CAMERA_FILTER) readonly buffer Filter { float filter_steps[]; };
 layout(push_constant) uniform Push { CameraParams params; };
+
+float filter_place(float u) {
+    float at = u * float(FILTER_INTERVALS);
+    float low = floor(at);
+    float a = filter_steps[uint(low)], b = filter_steps[uint(low) + 1u];
+    return a + (at - low) * (b - a);
+}
 
 void main() {
     uvec2 pixel = tile_pixel();
@@ -25,10 +39,23 @@ void main() {
     bool outside = any(greaterThanEqual(pixel, params.tile_size));
     paths[ray] = Path(vec3(1.0), outside ? NONE : pixel.y * params.tile_size.x + pixel.x, CHANNELS_ALL, 0u, 0u, 0u,
                       uint[MEDIA_WORDS](0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u));
-    vec2 center = vec2(params.tile_origin + pixel) + 0.5;
-    float x = (center.x - params.half_width) * params.scale;
-    float y = (params.half_height - center.y) * params.scale;
-    vec3 direction = normalize3((params.forward + x * params.right) + y * params.up);
-    uint cell = enter_grid(grid, params.eye, direction);
-    store_ray(ray, new_ray(params.eye, direction, outside ? NONE : cell, NONE));
+    uvec2 at = params.tile_origin + pixel;
+    vec2 offset = vec2(0.0), lens = vec2(0.0);
+    if (params.sample_index != NONE) {
+        vec2 u = sample_2d(at, params.sample_index, params.seed, uint(SAMPLE_FILM));
+        offset = vec2(filter_place(u.x), filter_place(u.y));
+        u = sample_2d(at, params.sample_index, params.seed, uint(SAMPLE_LENS));
+        lens = params.lens_radius * concentric_disc(u);
+    }
+    vec2 center = vec2(at) + 0.5;
+    vec2 place = vec2(((center.x - params.half_width) + offset.x) * params.scale,
+                      ((params.half_height - center.y) - offset.y) * params.scale);
+    bool parallel = params.projection == ORTHOGRAPHIC;
+    vec2 slope = (parallel ? vec2(0.0) : place) - lens / params.focus;
+    vec2 start = (parallel ? place : vec2(0.0)) + lens;
+    vec3 direction = normalize3((params.forward + slope.x * params.right) + slope.y * params.up);
+    bool from_eye = start.x == 0.0 && start.y == 0.0;
+    vec3 origin = from_eye ? params.eye : (params.eye + start.x * params.right) + start.y * params.up;
+    uint cell = enter_grid(grid, origin, direction);
+    store_ray(ray, new_ray(origin, direction, outside ? NONE : cell, NONE));
 }

@@ -18,6 +18,7 @@
 #include "math.glsl"
 #include "grid.glsl"
 #include "optics.glsl"
+#include "sampler.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
@@ -76,6 +77,9 @@ void main() {
     bool passes = is_glass && crossing.before == crossing.after;
     uint count = is_glass && splits(crossing, all) ? 3u : 1u;
     vec3 throughput = paths[at].throughput * (is_glass ? vec3(1.0) : objects[object].albedo);
+    uvec2 pixel = params.tile_origin + uvec2(paths[at].pixel % params.tile_size.x, paths[at].pixel / params.tile_size.x);
+    uint sample_index = params.sample_index == NONE ? 0u : params.sample_index;
+    float chance = sample_1d(pixel, sample_index, params.seed, uint(SAMPLE_FRESNEL) + paths[at].bounces);
     uint to = next[at];
     bool goes_on = next[at + 1u] > to;
     for (uint i = 0u; i < count; ++i) {
@@ -83,7 +87,8 @@ void main() {
         vec3 n1 = ior_of(crossing.before), n2 = ior_of(crossing.after);
         bool red = (channels & 1u) != 0u, green = channels == 2u;
         Refraction bent = refraction(d, n, red ? n1.x : (green ? n1.y : n1.z), red ? n2.x : (green ? n2.y : n2.z));
-        bool reflects = !is_glass || (bent.total && !passes);
+        bool by_chance = params.fresnel != 0u && chance < bent.reflectance;
+        bool reflects = !is_glass || (!passes && (bent.total || by_chance));
         vec3 direction = reflects ? reflected(d, n) : (passes ? d : bent.direction);
         if (goes_on) {
             store_path(to + i, at, throughput, channels, !passes, !reflects, object, crossing.place);

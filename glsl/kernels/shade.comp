@@ -13,6 +13,7 @@
 #define STATE_READS
 #include "layout.glsl"
 #include "math.glsl"
+#include "light.glsl"
 #include "state.glsl"
 #include "index.glsl"
 

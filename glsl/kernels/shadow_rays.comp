@@ -39,7 +39,13 @@ void main() {
     uint ray = lit_rays[at].x;
     Hit hit = hits[ray];
     vec3 sum = params.light > 0u ? gathered(at, paths[ray].pixel) : vec3(0.0);
-    LightSample light = sample_light(lights[params.light], hit.position, vec2(0.5));
+    vec2 place = vec2(0.5); // of a light: its centre, unless it is sampled
+    if (params.sample_index != NONE) {
+        uint tile_at = paths[ray].pixel;
+        uvec2 pixel = params.tile_origin + uvec2(tile_at % params.tile_size.x, tile_at / params.tile_size.x);
+        place = sample_2d(pixel, params.sample_index, params.seed, uint(SAMPLE_LIGHT) + params.light);
+    }
+    LightSample light = sample_light(lights[params.light], hit.position, place);
     vec3 arriving = light.arriving * max(dot3(hit.normal, light.towards), 0.0);
     bool arrives = any(greaterThan(arriving, vec3(0.0)));
     light_sums[at] = LightSum(sum, 0u, arriving, 0u);

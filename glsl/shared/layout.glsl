@@ -99,6 +99,8 @@
 
 #define MOST_CROSSINGS 1024 // surfaces a path may pass through that do not change its medium
 #define CHANNELS_ALL 7 // a path's channels: 1 red, 2 green, 4 blue
+#define CAMERA_FILTER 28
+#define FILM_SUMS 29
 
 // What has become of a pixel's hit: the low byte of Hit.status.
 #define HIT_NONE 0
@@ -116,6 +118,16 @@
 
 #define LIGHT_DIRECTIONAL 0
 #define LIGHT_POINT 1
+
+#define PERSPECTIVE 0
+#define ORTHOGRAPHIC 1
+#define FILTER_INTERVALS 1024 // of the table that the reconstruction filter is sampled by
+
+// What each two numbers of the low-discrepancy sequence are for (sampler.glsl).
+#define SAMPLE_FILM 0
+#define SAMPLE_LENS 1
+#define SAMPLE_FRESNEL 2 // then one a bounce
+#define SAMPLE_LIGHT 4096 // then one a light
 
 struct Point {           // 16 bytes
     vec3 position;       //  0  centred scene space
@@ -201,17 +213,21 @@ struct SortParams {      // 12 bytes
     uint runs;           // 8
 };
 
-struct CameraParams {    // 80 bytes
+struct CameraParams {    // 96 bytes
     vec3 eye;            //  0  centred scene space
-    float scale;         // 12  half the picture's height on the plane at distance 1, over half the rows
+    float scale;         // 12  half the view's height, over half the rows; perspective: at distance 1
     vec3 right;          // 16
     float half_width;    // 28  of the full image, pixels
     vec3 up;             // 32
     float half_height;   // 44  of the full image, pixels
     vec3 forward;        // 48
-    uint pad;            // 60
+    uint sample_index;   // 60  of the pixel; NONE: there is one alone, through its centre
     uvec2 tile_origin;   // 64  in the full image, pixels
     uvec2 tile_size;     // 72
+    uint projection;     // 80  PERSPECTIVE or ORTHOGRAPHIC
+    float lens_radius;   // 84
+    float focus;         // 88  distance of the plane in focus along the viewing axis
+    uint seed;           // 92
 };
 
 struct TraceParams {     // 16 bytes
@@ -229,11 +245,11 @@ struct DepthRanks {      // 16 bytes
     uint bits;           // 12  of a rank
 };
 
-struct DiscParams {      // 104 bytes
+struct DiscParams {      // 120 bytes
     CameraParams camera; //  0
-    DepthRanks ranks;    // 80
-    uint point_count;    // 96
-    uint pair_count;     // 100
+    DepthRanks ranks;    // 96
+    uint point_count;    // 112
+    uint pair_count;     // 116
 };
 
 struct DiscTraceParams { // 28 bytes
@@ -243,7 +259,7 @@ struct DiscTraceParams { // 28 bytes
 };
 
 // Of the kernels that scatter and shade the rays of a wave.
-struct WaveParams {      // 80 bytes
+struct WaveParams {      // 76 bytes
     vec3 forward;        //  0  viewing axis
     uint ray_count;      // 12  of the wave; of shadow_rays and shade: hits on diffuse surfaces
     vec3 background;     // 16
@@ -256,8 +272,7 @@ struct WaveParams {      // 80 bytes
     uint seed;           // 60
     uint light;          // 64  the one that shadow rays go to now
     uint light_count;    // 68
-    uint sample_index;   // 72
-    uint sample_count;   // 76
+    uint sample_index;   // 72  of the pixel; NONE: there is one alone, and lights have no extent
 };
 
 struct ObjectInfo {      // 80 bytes
@@ -281,7 +296,7 @@ struct Light {           // 32 bytes
     vec3 vector;         //  0  unit, towards a directional light; a point light's position
     uint kind;           // 12  LIGHT_*
     vec3 strength;       // 16  irradiance, or intensity
-    uint pad;            // 28
+    float extent;        // 28  sine of half its angle, or radius; 0: hard
 };
 
 struct Hit {             // 32 bytes
@@ -315,5 +330,17 @@ struct FilmPixel {       // 64 bytes
     vec4 position_depth; // 16  centred scene space; distance along the viewing axis
     vec4 normal_object;  // 32  facing the viewer; object, or -1
     uvec4 counts;        // 48  tests, cells, slot of the hit or NONE, iterations
+};
+
+// A pixel's samples so far: sums of colours and of the first two counts; all else is the first's.
+struct FilmSum {         // 80 bytes
+    FilmPixel pixel;     //  0
+    vec4 lost;           // 64  what rounding added to the colours' sums
+};
+
+struct AccumulateParams { // 16 bytes
+    uvec2 tile_size;     //  0
+    uint sample_index;   //  8  of the samples in film
+    uint samples;        // 12  in all
 };
 #endif

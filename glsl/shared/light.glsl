@@ -1,24 +1,64 @@
-// light: what a light sends to a point (method, section 4).
+// light: a place on a light, and what arrives from there (method, section 6).
 //
 // twin  crates/reference/src/light.rs
+// A directional light is a disc on the sky, a point light a sphere. Places are even in projected
+// solid angle about the direction to the centre, so that a surface that faces the light gets exactly
+// what it would from a hard one, whichever place is drawn.
 #ifndef LIGHT_GLSL
 #define LIGHT_GLSL
 #include "layout.glsl"
 #include "math.glsl"
+#include "sampler.glsl"
+
+#define LEAST_COSINE 1e-3 // between a place and the centre, as weights see it: the widest lights alone
+#define MOST_LIGHT 1e30 // so that nothing overflows next to a light
 
 struct LightSample {
-    vec3 towards;   // unit, to the light
-    float distance; // of it, or NO_HIT
-    vec3 arriving;  // irradiance on a surface that faces it
+    vec3 towards;   // unit
+    float distance; // to the light's surface along it; NO_HIT: infinite
+    vec3 arriving;  // irradiance, to be multiplied by max(0, n . towards)
 };
 
+// The direction at sines (s.x, s.y) about a unit axis (frame after Duff et al., Building an
+// Orthonormal Basis, Revisited, JCGT 2017).
+vec3 about_axis(vec3 axis, vec2 s, float cosine) {
+    float side = axis.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (side + axis.z);
+    float b = axis.x * axis.y * a;
+    vec3 first = vec3(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
+    vec3 second = vec3(b, side + axis.y * axis.y * a, -axis.y);
+    return (s.x * first + s.y * second) + cosine * axis;
+}
+
+// What arrives at x from the place on the light that u in the unit square stands for; (1/2, 1/2) is
+// the centre. Inside a sphere the light is as strong as on its surface, and comes from half of all
+// directions; a point without extent does not light itself.
 LightSample sample_light(Light light, vec3 x, vec2 u) {
-    vec3 towards = light.vector - x;
-    float square = dot3(towards, towards);
-    bool is_point = light.kind == LIGHT_POINT && square > 0.0;
-    vec3 l = is_point ? towards / sqrt(square) : light.vector;
-    vec3 arriving = is_point ? light.strength / square : light.strength;
-    vec3 nothing = vec3(0.0);
-    return LightSample(l, is_point ? sqrt(square) : NO_HIT, light.kind == LIGHT_POINT && !is_point ? nothing : arriving);
+    bool is_point = light.kind == LIGHT_POINT;
+    vec3 away = light.vector - x;
+    float square = dot3(away, away);
+    float center_distance = sqrt(square);
+    bool apart = square > 0.0;
+    vec3 to_center = apart ? away / (apart ? center_distance : 1.0) : vec3(0.0, 0.0, 1.0);
+    vec3 axis = is_point ? to_center : light.vector;
+    float least = light.extent * light.extent;
+    bool within = square <= least;
+    float seen = within ? 1.0 : light.extent / (within ? 1.0 : center_distance);
+    float sine = is_point ? seen : light.extent;
+
+    vec2 s = sine * concentric_disc(u);
+    float sines = s.x * s.x + s.y * s.y;
+    float cosine = sqrt(max(1.0 - sines, 0.0));
+    vec3 towards = sines > 0.0 ? about_axis(axis, s, cosine) : axis;
+
+    // The foot of the sphere's centre on the ray lies half a chord behind the entry.
+    float foot = center_distance * cosine;
+    float half_chord = sqrt(max(least - square * sines, 0.0));
+    float entry = max(within ? foot + half_chord : foot - half_chord, 0.0);
+
+    float divisor = is_point ? max(square, least) : 1.0;
+    bool dark = divisor <= 0.0;
+    vec3 arriving = (light.strength / (dark ? 1.0 : divisor)) / max(cosine, LEAST_COSINE);
+    return LightSample(towards, is_point ? entry : NO_HIT, dark ? vec3(0.0) : min(arriving, vec3(MOST_LIGHT)));
 }
 #endif

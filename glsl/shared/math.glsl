@@ -36,4 +36,21 @@ float exp_negative(float x) {
     float scale = uintBitsToFloat(uint(int(n) + 127) << 23);
     return x < -80.0 ? 0.0 : e * scale;
 }
+
+// Sine and cosine for |x| <= pi / 4. Error under 1 ulp. Polynomials after Moshier's Cephes, sinf.c.
+float sin_octant(float x) {
+    float z = x * x;
+    float p = -1.9515295891e-4;
+    p = p * z + 8.3321608736e-3;
+    p = p * z - 1.6666654611e-1;
+    return p * z * x + x;
+}
+
+float cos_octant(float x) {
+    float z = x * x;
+    float p = 2.443315711809948e-5;
+    p = p * z - 1.388731625493765e-3;
+    p = p * z + 4.166664568298827e-2;
+    return (p * z * z - 0.5 * z) + 1.0;
+}
 #endif

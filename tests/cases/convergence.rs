@@ -157,10 +157,10 @@ fn measure(shape: &Shape, polynomial: &str, project: bool, count: u32) -> Errors
         cells: &reference.point_cells,
         objects: &plan.objects,
     };
-    let camera = plan.camera_of(&plan.window);
+    let camera = plan.camera_of(&plan.window, 0);
     let (mut distances, mut angles) = (Vec::new(), Vec::new());
     for pixel in 0..SIZE[0] * SIZE[1] {
-        let mut ray = camera_ray(&camera, &grid, [pixel % SIZE[0], pixel / SIZE[0]]);
+        let mut ray = camera_ray(&camera, &plan.filter, &grid, [pixel % SIZE[0], pixel / SIZE[0]]);
         let Some(hit) = hit_of(&reference, &around, &mut ray) else { continue };
         let (distance, normal) = (shape.nearest)(hit.position + V3(plan.cloud.origin));
         if -normal.dot(ray.direction) > GRAZING {

@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use film::{Tone, ToneCurve};
 use plan::Diagnostic;
 use std::path::PathBuf;
 
@@ -56,6 +57,13 @@ pub struct RenderArgs {
     /// Render only a part of the picture
     #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop)]
     pub crop: Option<plan::Window>,
+    /// Brighten PNG and JPEG files by so many stops, each a factor of two; EXR files hold the numbers
+    /// as they are
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_stops)]
+    pub exposure: f64,
+    /// Curve from radiance to PNG and JPEG files, after the exposure
+    #[arg(long, value_name = "CURVE", value_enum, default_value_t = Curve::Linear)]
+    pub tone: Curve,
     /// Diagnostic channels to add to EXR files, with commas between; may be given several times
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = diagnostic_parser())]
     pub channels: Vec<Diagnostic>,
@@ -155,6 +163,28 @@ pub enum ProgressWhen {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Curve {
+    /// Cut at white
+    Linear,
+    /// c / (1 + c) in each channel
+    Reinhard,
+    /// A film-like curve: deeper darks, a soft shoulder
+    Aces,
+}
+
+impl RenderArgs {
+    /// How 8-bit files are made.
+    pub fn tone(&self) -> Tone {
+        let curve = match self.tone {
+            Curve::Linear => ToneCurve::Linear,
+            Curve::Reinhard => ToneCurve::Reinhard,
+            Curve::Aces => ToneCurve::Aces,
+        };
+        Tone { exposure: self.exposure, curve }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum UpAxis {
     Y,
     Z,
@@ -194,6 +224,13 @@ fn parse_size(text: &str) -> Result<Size, String> {
     }
 }
 
+fn parse_stops(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(stops) if (-100.0..=100.0).contains(&stops) => Ok(stops),
+        _ => Err("expected a number from -100 to 100, e.g. 1.5".to_owned()),
+    }
+}
+
 fn parse_crop(text: &str) -> Result<plan::Window, String> {
     let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
     match numbers.as_deref() {
@@ -213,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn sizes_and_crops_are_whole_numbers() {
+    fn sizes_and_crops_are_whole_numbers_and_stops_are_numbers() {
         assert_eq!(parse_size("640x480"), Ok(Size(640, 480)));
         for wrong in ["640", "640x", "640x480x2", "-1x5", "1.5x2", "640 x 480", ""] {
             assert!(parse_size(wrong).is_err(), "{wrong}");
@@ -222,6 +259,10 @@ mod tests {
         assert_eq!(parse_crop("1,2,3,4"), Ok(window));
         for wrong in ["1,2,3", "1,2,3,4,5", "a,2,3,4", ""] {
             assert!(parse_crop(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(parse_stops("-1.5"), Ok(-1.5));
+        for wrong in ["", "bright", "nan", "inf", "101"] {
+            assert!(parse_stops(wrong).is_err(), "{wrong}");
         }
     }
 }

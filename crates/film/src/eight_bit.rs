@@ -1,11 +1,12 @@
 //! PNG and JPEG: the colours of a film in 8-bit sRGB.
 //!
-//! Colours are clamped, never tone-mapped: 1 is white. PNG is written by the crate `png` itself,
+//! Unless a [`Tone`] says otherwise, colours are clamped: 1 is white. PNG is written by the crate `png` itself,
 //! since `image` offers no way to add the chunk that says the values are sRGB.
 
 use crate::error::FilmError;
 use crate::picture::{Film, Window};
 use crate::srgb::{srgb_byte, unit_byte};
+use crate::tone::Tone;
 use image::ExtendedColorType;
 use image::codecs::jpeg::JpegEncoder;
 use std::path::Path;
@@ -13,7 +14,7 @@ use std::path::Path;
 const JPEG_QUALITY: u8 = 95;
 
 /// The film's window as PNG: RGBA if the film is transparent, else RGB.
-pub(crate) fn png(film: &Film, path: &Path) -> Result<Vec<u8>, FilmError> {
+pub(crate) fn png(film: &Film, tone: Tone, path: &Path) -> Result<Vec<u8>, FilmError> {
     let Window { width, height, .. } = film.window;
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
@@ -21,10 +22,10 @@ pub(crate) fn png(film: &Film, path: &Path) -> Result<Vec<u8>, FilmError> {
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let pixels = if film.transparent {
         encoder.set_color(png::ColorType::Rgba);
-        film.color.iter().flat_map(|&color| straight_rgba(color)).collect()
+        film.color.iter().flat_map(|&color| straight_rgba(color, tone)).collect()
     } else {
         encoder.set_color(png::ColorType::Rgb);
-        opaque(film)
+        opaque(film, tone)
     };
     encoder
         .write_header()
@@ -37,24 +38,25 @@ pub(crate) fn png(film: &Film, path: &Path) -> Result<Vec<u8>, FilmError> {
 }
 
 /// The film's window as JPEG, over black if the film is transparent.
-pub(crate) fn jpeg(film: &Film, path: &Path) -> Result<Vec<u8>, FilmError> {
+pub(crate) fn jpeg(film: &Film, tone: Tone, path: &Path) -> Result<Vec<u8>, FilmError> {
     let Window { width, height, .. } = film.window;
     let mut file = Vec::new();
     JpegEncoder::new_with_quality(&mut file, JPEG_QUALITY)
-        .encode(&opaque(film), width, height, ExtendedColorType::Rgb8)
+        .encode(&opaque(film, tone), width, height, ExtendedColorType::Rgb8)
         .map_err(|error| encode_error(film, path, &error))?;
     Ok(file)
 }
 
 /// The colours without alpha. A premultiplied colour over black is the colour itself.
-fn opaque(film: &Film) -> Vec<u8> {
-    film.color.iter().flat_map(|&[r, g, b, _]| [r, g, b].map(srgb_byte)).collect()
+fn opaque(film: &Film, tone: Tone) -> Vec<u8> {
+    let shown = |c: f32| srgb_byte(tone.apply(c));
+    film.color.iter().flat_map(|&[r, g, b, _]| [r, g, b].map(shown)).collect()
 }
 
 /// A premultiplied colour as PNG wants it: not multiplied by alpha. Without coverage it is black,
 /// however bright.
-fn straight_rgba([r, g, b, a]: [f32; 4]) -> [u8; 4] {
-    let straight = |c: f32| if a > 0.0 { srgb_byte(c / a) } else { 0 };
+fn straight_rgba([r, g, b, a]: [f32; 4], tone: Tone) -> [u8; 4] {
+    let straight = |c: f32| if a > 0.0 { srgb_byte(tone.apply(c / a)) } else { 0 };
     [straight(r), straight(g), straight(b), unit_byte(f64::from(a))]
 }
 

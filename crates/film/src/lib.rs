@@ -13,12 +13,14 @@ mod exr_write;
 mod picture;
 mod srgb;
 mod store;
+mod tone;
 
 pub use error::FilmError;
 pub use exr_read::{ExrPicture, read_exr};
 pub use picture::{Film, Provenance, Window};
 pub use srgb::srgb_byte;
 pub use store::store;
+pub use tone::{Tone, ToneCurve};
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -66,11 +68,27 @@ impl FileFormat {
 /// ([`FilmError::is_out_of_space`]), or a picture that the format cannot hold. Nothing is left
 /// behind then, and a file that was there before is as it was.
 pub fn write(film: &Film, provenance: &Provenance, path: &Path) -> Result<(), FilmError> {
+    write_toned(film, provenance, Tone::default(), path)
+}
+
+/// As [`write()`], with a tone for PNG and JPEG; an EXR has the numbers as they are.
+///
+/// # Panics
+/// As [`write()`].
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_toned(
+    film: &Film,
+    provenance: &Provenance,
+    tone: Tone,
+    path: &Path,
+) -> Result<(), FilmError> {
     film.assert_consistent();
     let bytes = match FileFormat::from_path(path)? {
         FileFormat::Exr => exr_write::encode(film, provenance, path)?,
-        FileFormat::Png => eight_bit::png(film, path)?,
-        FileFormat::Jpeg => eight_bit::jpeg(film, path)?,
+        FileFormat::Png => eight_bit::png(film, tone, path)?,
+        FileFormat::Jpeg => eight_bit::jpeg(film, tone, path)?,
     };
     store(path, &bytes)
 }

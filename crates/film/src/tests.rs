@@ -404,3 +404,22 @@ mod unix {
         assert!(!error_of(&folder.path().join("b/a.exr")).is_out_of_space());
     }
 }
+
+#[test]
+fn a_tone_changes_eight_bit_files_alone() {
+    let folder = folder();
+    let written = |tone: Tone, name: &str| {
+        let path = folder.path().join(name);
+        let mut film = Film::empty([2, 1], Window::whole([2, 1]), true);
+        film.color[1] = [0.25, 0.125, 0.0, 0.5];
+        write_toned(&film, &provenance(), tone, &path).unwrap();
+        fs::read(path).unwrap()
+    };
+    let brighter = Tone { exposure: 1.0, curve: ToneCurve::Reinhard };
+    assert!(written(Tone::default(), "a.exr") == written(brighter, "b.exr"));
+    let image = image::load_from_memory(&written(brighter, "a.png")).unwrap().to_rgba8();
+    // 0.25 / 0.5 a stop brighter is 1, and 1 / (1 + 1) is 0.5; coverage stays.
+    assert_eq!(image.get_pixel(1, 0).0, [188, srgb_byte(1.0 / 3.0), 0, 128]);
+    assert_eq!(image.get_pixel(0, 0).0, [0, 0, 0, 0]);
+    assert!(written(Tone::default(), "a.jpg") != written(brighter, "b.jpg"));
+}

@@ -186,6 +186,10 @@ constants! {
     MOST_CROSSINGS = 1024;
     /// [`Path::channels`] of a ray that carries all three.
     CHANNELS_ALL = 7;
+    /// Binding of `camera_rays`: where the reconstruction filter's integral takes equal steps.
+    CAMERA_FILTER = 28;
+    /// Binding of `accumulate`: [`FilmSum`]s.
+    FILM_SUMS = 29;
     /// A pixel that hit nothing.
     HIT_NONE = 0;
     /// A hit that stands.
@@ -211,6 +215,20 @@ constants! {
     LIGHT_DIRECTIONAL = 0;
     /// A light at a point.
     LIGHT_POINT = 1;
+    /// Rays from one place, or through one place of the lens.
+    PERSPECTIVE = 0;
+    /// Parallel rays.
+    ORTHOGRAPHIC = 1;
+    /// Intervals of the table that the reconstruction filter is sampled by.
+    FILTER_INTERVALS = 1024;
+    /// Numbers of the low-discrepancy sequence for the place on the film.
+    SAMPLE_FILM = 0;
+    /// For the place on the lens.
+    SAMPLE_LENS = 1;
+    /// For what glass does with a ray: one a bounce from here on.
+    SAMPLE_FRESNEL = 2;
+    /// For the place on a light: one a light from here on.
+    SAMPLE_LIGHT = 4096;
 }
 
 /// One point of the scene.
@@ -404,7 +422,7 @@ gpu_layout!(SortParams, 12, { count: 0, shift: 4, runs: 8 });
 pub struct CameraParams {
     /// Centred scene space.
     pub eye: [f32; 3],
-    /// Size of a pixel on the plane at distance 1.
+    /// Size of a pixel: on the plane at distance 1, or, where rays are parallel, anywhere.
     pub scale: f32,
     /// Unit vector to the right.
     pub right: [f32; 3],
@@ -416,16 +434,26 @@ pub struct CameraParams {
     pub half_height: f32,
     /// Unit vector of the viewing axis.
     pub forward: [f32; 3],
-    /// Unused.
-    pub pad: u32,
+    /// Which sample of its pixel; `NONE` where there is one alone, through the pixel's centre and the
+    /// lens's.
+    pub sample_index: u32,
     /// The tile's first pixel in the full image.
     pub tile_origin: [u32; 2],
     /// Columns and rows of the tile.
     pub tile_size: [u32; 2],
+    /// `PERSPECTIVE` or `ORTHOGRAPHIC`.
+    pub projection: u32,
+    /// 0: a pinhole.
+    pub lens_radius: f32,
+    /// Distance along the viewing axis of the plane in focus, greater than 0.
+    pub focus: f32,
+    /// Of all that is random.
+    pub seed: u32,
 }
-gpu_layout!(CameraParams, 80, {
-    eye: 0, scale: 12, right: 16, half_width: 28, up: 32, half_height: 44, forward: 48, pad: 60,
-    tile_origin: 64, tile_size: 72,
+gpu_layout!(CameraParams, 96, {
+    eye: 0, scale: 12, right: 16, half_width: 28, up: 32, half_height: 44, forward: 48,
+    sample_index: 60, tile_origin: 64, tile_size: 72, projection: 80, lens_radius: 84, focus: 88,
+    seed: 92,
 });
 
 /// Push constants of `grid_trace`.
@@ -471,7 +499,7 @@ pub struct DiscParams {
     /// Pairs of a screen tile and a point whose disc covers it.
     pub pair_count: u32,
 }
-gpu_layout!(DiscParams, 104, { camera: 0, ranks: 80, point_count: 96, pair_count: 100 });
+gpu_layout!(DiscParams, 120, { camera: 0, ranks: 96, point_count: 112, pair_count: 116 });
 
 /// Push constants of `disc_trace`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -514,15 +542,12 @@ pub struct WaveParams {
     pub light: u32,
     /// Lights of the scene.
     pub light_count: u32,
-    /// Which sample of each pixel.
+    /// Which sample of each pixel; `NONE` where there is one alone, and lights have no extent.
     pub sample_index: u32,
-    /// Samples a pixel.
-    pub sample_count: u32,
 }
-gpu_layout!(WaveParams, 80, {
+gpu_layout!(WaveParams, 76, {
     forward: 0, ray_count: 12, background: 16, transparent: 28, tile_origin: 32, tile_size: 40,
     wave: 48, max_bounces: 52, fresnel: 56, seed: 60, light: 64, light_count: 68, sample_index: 72,
-    sample_count: 76,
 });
 
 /// What shading needs of an object.
@@ -574,10 +599,10 @@ pub struct Light {
     pub kind: u32,
     /// Irradiance on a surface facing it, or intensity.
     pub strength: [f32; 3],
-    /// Unused.
-    pub pad: u32,
+    /// Sine of half the angle of a directional light; a point light's radius. 0: it is hard.
+    pub extent: f32,
 }
-gpu_layout!(Light, 32, { vector: 0, kind: 12, strength: 16, pad: 28 });
+gpu_layout!(Light, 32, { vector: 0, kind: 12, strength: 16, extent: 28 });
 
 /// Where a pixel's ray met a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -647,6 +672,30 @@ pub struct FilmPixel {
 }
 gpu_layout!(FilmPixel, 64, { color: 0, position_depth: 16, normal_object: 32, counts: 48 });
 
+/// A pixel's samples so far.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct FilmSum {
+    /// Sums of colours and of the first two counts; all else is the first sample's.
+    pub pixel: FilmPixel,
+    /// What rounding added to the colours' sums.
+    pub lost: [f32; 4],
+}
+gpu_layout!(FilmSum, 80, { pixel: 0, lost: 64 });
+
+/// Push constants of `accumulate`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct AccumulateParams {
+    /// Columns and rows of the tile.
+    pub tile_size: [u32; 2],
+    /// Which sample the film holds.
+    pub sample_index: u32,
+    /// In all.
+    pub samples: u32,
+}
+gpu_layout!(AccumulateParams, 16, { tile_size: 0, sample_index: 8, samples: 12 });
+
 /// Every struct that host and kernels share.
 pub const STRUCTS: &[StructLayout] = &[
     Point::LAYOUT,
@@ -673,4 +722,6 @@ pub const STRUCTS: &[StructLayout] = &[
     Path::LAYOUT,
     LightSum::LAYOUT,
     FilmPixel::LAYOUT,
+    FilmSum::LAYOUT,
+    AccumulateParams::LAYOUT,
 ];

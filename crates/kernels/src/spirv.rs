@@ -24,7 +24,9 @@ macro_rules! modules {
 }
 
 modules! {
-    /// The ray through each pixel's centre.
+    /// Adds a sample to each pixel's sum.
+    accumulate,
+    /// The camera's ray of each pixel.
     camera_rays,
     /// Where each cell's entries begin.
     cell_offsets,

@@ -1,8 +1,8 @@
 //! The view: where rays start, which way they go, and the matrices that say so in an EXR.
 
 use glam::{DMat4, DVec3, DVec4};
-use kernels::layout::CameraParams;
-use scene::{Camera, Up};
+use kernels::layout::{CameraParams, NONE, ORTHOGRAPHIC, PERSPECTIVE};
+use scene::{Camera, Projection, Up};
 
 /// Direction from the points to the eye, for +y up.
 const FRAMING_DIRECTION: DVec3 = DVec3::new(0.45, 0.35, 1.0);
@@ -63,7 +63,14 @@ pub(crate) fn frame<'a>(
     });
     let target = center + shift[0] * right + shift[1] * above;
     let eye = target - distance * forward;
-    Camera { eye: eye.into(), target: target.into(), up: up.into(), vertical_fov: FRAMING_FOV }
+    Camera {
+        eye: eye.into(),
+        target: target.into(),
+        up: up.into(),
+        projection: Projection::Perspective { vertical_fov: FRAMING_FOV },
+        aperture: 0.0,
+        focus: None,
+    }
 }
 
 /// The shift c at which the extremes of (at − c)/depth, in the picture, are equally far from its middle.
@@ -94,7 +101,8 @@ pub struct View {
     /// Row vectors, v · M: from (world − origin) to a camera that looks along −z, +y up.
     pub world_to_camera: [[f32; 4]; 4],
     /// Row vectors, v · M: from (world − origin); after division by w, x to the right and y down,
-    /// (0, 0) and (1, 1) at the corners of the picture, z = 1 − 1/depth.
+    /// (0, 0) and (1, 1) at the corners of the picture; z = 1 − 1/depth, or the depth where rays are
+    /// parallel, and w = 1.
     pub world_to_ndc: [[f32; 4]; 4],
 }
 
@@ -107,19 +115,30 @@ impl View {
         let right = forward.cross(up).normalize();
         let up = right.cross(forward);
         let local_eye = eye - DVec3::from(origin);
-        let half_tangent = (0.5 * camera.vertical_fov.to_radians()).tan();
+        // Half of what the picture shows: at distance 1, or, where rays are parallel, anywhere.
+        let half_extent = match camera.projection {
+            Projection::Perspective { vertical_fov } => (0.5 * vertical_fov.to_radians()).tan(),
+            Projection::Orthographic { height } => 0.5 * height,
+        };
         let [width, height] = image_size.map(f64::from);
         let params = CameraParams {
             eye: local_eye.as_vec3().into(),
-            scale: (half_tangent / (0.5 * height)) as f32,
+            scale: (half_extent / (0.5 * height)) as f32,
             right: right.as_vec3().into(),
             half_width: (0.5 * width) as f32,
             up: up.as_vec3().into(),
             half_height: (0.5 * height) as f32,
             forward: forward.as_vec3().into(),
-            pad: 0,
+            sample_index: NONE,
             tile_origin: [0, 0],
             tile_size: [0, 0],
+            projection: match camera.projection {
+                Projection::Perspective { .. } => PERSPECTIVE,
+                Projection::Orthographic { .. } => ORTHOGRAPHIC,
+            },
+            lens_radius: (0.5 * camera.aperture) as f32,
+            focus: camera.focus.unwrap_or((target - eye).length()) as f32,
+            seed: 0,
         };
         // glam's columns, read as rows, are the row vectors' matrix.
         let camera_axes = DMat4::from_cols(
@@ -128,14 +147,22 @@ impl View {
             (-forward).extend(forward.dot(local_eye)),
             DVec4::W,
         );
-        let x_scale = 0.5 / (half_tangent * width / height);
-        let y_scale = 0.5 / half_tangent;
-        let projection = DMat4::from_cols(
-            DVec4::new(x_scale, 0.0, -0.5, 0.0),
-            DVec4::new(0.0, -y_scale, -0.5, 0.0),
-            DVec4::new(0.0, 0.0, -1.0, -1.0),
-            DVec4::new(0.0, 0.0, -1.0, 0.0),
-        );
+        let x_scale = 0.5 / (half_extent * width / height);
+        let y_scale = 0.5 / half_extent;
+        let projection = match camera.projection {
+            Projection::Perspective { .. } => DMat4::from_cols(
+                DVec4::new(x_scale, 0.0, -0.5, 0.0),
+                DVec4::new(0.0, -y_scale, -0.5, 0.0),
+                DVec4::new(0.0, 0.0, -1.0, -1.0),
+                DVec4::new(0.0, 0.0, -1.0, 0.0),
+            ),
+            Projection::Orthographic { .. } => DMat4::from_cols(
+                DVec4::new(x_scale, 0.0, 0.0, 0.5),
+                DVec4::new(0.0, -y_scale, 0.0, 0.5),
+                DVec4::new(0.0, 0.0, -1.0, 0.0),
+                DVec4::W,
+            ),
+        };
         Self {
             params,
             world_to_camera: row_vector_matrix(camera_axes),
@@ -159,12 +186,16 @@ mod tests {
         [0, 1, 2, 3].map(|j| v[0] * m[0][j] + v[1] * m[1][j] + v[2] * m[2][j] + m[3][j])
     }
 
-    fn view() -> View {
+    const WIDE: Projection = Projection::Perspective { vertical_fov: 90.0 };
+
+    fn view(projection: Projection) -> View {
         let camera = Camera {
             eye: [10.0, 2.0, 5.0],
             target: [10.0, 2.0, 0.0],
             up: [0.0, 3.0, 0.0],
-            vertical_fov: 90.0,
+            projection,
+            aperture: 0.0,
+            focus: None,
         };
         View::new(&camera, [200, 100], [10.0, 0.0, 0.0])
     }
@@ -172,14 +203,14 @@ mod tests {
     #[test]
     fn camera_looks_along_minus_z_with_y_up() {
         // One to the right of, two above and four before the eye; the origin is subtracted.
-        let [x, y, z, w] = apply([1.0, 4.0, 1.0], view().world_to_camera);
+        let [x, y, z, w] = apply([1.0, 4.0, 1.0], view(WIDE).world_to_camera);
         assert_eq!([x, y, z, w], [1.0, 2.0, -4.0, 1.0]);
     }
 
     #[test]
     fn ndc_has_its_corners_at_the_corners_of_the_picture() {
         let ndc = |p: [f32; 3]| {
-            let [x, y, z, w] = apply(p, view().world_to_ndc);
+            let [x, y, z, w] = apply(p, view(WIDE).world_to_ndc);
             [x / w, y / w, z / w]
         };
         let close = |a: [f32; 3], b: [f32; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-6);
@@ -187,6 +218,16 @@ mod tests {
         assert!(close(ndc([-4.0, 4.0, 3.0]), [0.0, 0.0, 0.5]), "{:?}", ndc([-4.0, 4.0, 3.0]));
         assert!(close(ndc([4.0, 0.0, 3.0]), [1.0, 1.0, 0.5]), "{:?}", ndc([4.0, 0.0, 3.0]));
         assert!(close(ndc([0.0, 2.0, 1.0]), [0.5, 0.5, 0.75]), "{:?}", ndc([0.0, 2.0, 1.0]));
+    }
+
+    #[test]
+    fn parallel_rays_show_the_same_at_any_depth() {
+        let view = view(Projection::Orthographic { height: 4.0 });
+        // From 4 above the centre to 0, and, twice as wide as high, from -4 to 4.
+        assert_eq!(apply([-4.0, 4.0, 3.0], view.world_to_ndc), [0.0, 0.0, 2.0, 1.0]);
+        assert_eq!(apply([4.0, 0.0, -7.0], view.world_to_ndc), [1.0, 1.0, 12.0, 1.0]);
+        assert_eq!((view.params.scale, view.params.projection), (0.04, ORTHOGRAPHIC));
+        assert_eq!((view.params.focus, view.params.lens_radius), (5.0, 0.0));
     }
 
     /// Every point is inside the picture, and along one axis both sides are reached.

@@ -1,7 +1,7 @@
 //! Primary rays by discs (\[T\] §4): when, and how the points of a screen tile are ordered.
 
 use crate::{Diagnostic, Plan, Primary, Window};
-use kernels::layout::{DISC_TILE, DepthRanks, DiscParams, GridInfo};
+use kernels::layout::{DISC_TILE, DepthRanks, DiscParams, GridInfo, PERSPECTIVE};
 
 /// Pairs of a screen tile and a point that one tile of the picture may have. One binding holds 32
 /// million on any device; what has more is traced through the grid, which gives the same bytes.
@@ -18,10 +18,13 @@ const POINTS_PER_PIXEL: usize = 4;
 const FEWEST_PIXELS: usize = 32_768;
 
 impl Plan {
-    /// Whether the camera rays of a tile of the picture are to find their first hit by discs.
+    /// Whether the camera rays of a tile of the picture are to find their first hit by discs: where all
+    /// of them start from the eye and go through their pixel's centre, which binning relies on.
     #[must_use]
     pub fn by_discs(&self, tile: &Window) -> bool {
+        let from_eye = self.samples == 1 && self.camera.projection == PERSPECTIVE;
         match self.primary {
+            _ if !from_eye => false,
             Primary::Discs => true,
             Primary::Grid => false,
             Primary::Auto => self.discs_are_faster(tile) && !self.is_about_cells(),
@@ -43,7 +46,7 @@ impl Plan {
     #[must_use]
     pub fn discs_of(&self, tile: &Window, grid: &GridInfo) -> DiscParams {
         DiscParams {
-            camera: self.camera_of(tile),
+            camera: self.camera_of(tile, 0),
             ranks: depth_ranks(self.camera.eye, grid, screen_tiles(tile)),
             point_count: self.cloud.points.len() as u32,
             pair_count: 0,

@@ -8,6 +8,7 @@
 mod camera;
 mod diagnostic;
 mod discs;
+mod filter;
 mod isolated;
 mod picture;
 
@@ -67,7 +68,11 @@ pub struct Plan {
     pub cells_per_pass: u32,
     /// How camera rays find their first hit. Changes no pixel.
     pub primary: Primary,
-    /// Parameters of `camera_rays`, but for the tile.
+    /// Rays a pixel; one alone goes through its centre.
+    pub samples: u32,
+    /// Where the reconstruction filter's integral takes equal steps, in pixels from a pixel's centre.
+    pub filter: Vec<f32>,
+    /// Parameters of `camera_rays`, but for tile and sample.
     pub camera: CameraParams,
     /// Parameters of the kernels that scatter and shade, but for the tile and the wave.
     pub wave: WaveParams,
@@ -175,7 +180,9 @@ impl Plan {
             grid_resolution: scene.render.grid_resolution,
             cells_per_pass: scene.render.cells_per_pass,
             primary: scene.render.primary,
-            camera: view.params,
+            samples: scene.image.samples,
+            filter: filter::steps(scene.image.filter, scene.image.filter_width),
+            camera: CameraParams { seed: scene.render.seed, ..view.params },
             wave: WaveParams {
                 forward: view.params.forward,
                 ray_count: 0,
@@ -189,8 +196,7 @@ impl Plan {
                 seed: scene.render.seed,
                 light: 0,
                 light_count: scene.lights.len() as u32,
-                sample_index: 0,
-                sample_count: scene.image.samples,
+                sample_index: NONE,
             },
             objects,
             colors,
@@ -249,17 +255,29 @@ impl Plan {
             .collect()
     }
 
-    /// Parameters of `camera_rays` for one tile.
+    /// Parameters of `camera_rays` for one sample of one tile.
     #[must_use]
-    pub fn camera_of(&self, tile: &Window) -> CameraParams {
-        CameraParams { tile_origin: tile.origin, tile_size: tile.size, ..self.camera }
+    pub fn camera_of(&self, tile: &Window, sample: u32) -> CameraParams {
+        let sample_index = self.sample_index(sample);
+        CameraParams { tile_origin: tile.origin, tile_size: tile.size, sample_index, ..self.camera }
     }
 
-    /// Parameters of the kernels that scatter and shade, for the first wave of one tile.
+    /// Parameters of the kernels that scatter and shade, for the first wave of one sample of one
+    /// tile.
     #[must_use]
-    pub fn wave_of(&self, tile: &Window) -> WaveParams {
-        let ray_count = camera_wave(tile);
-        WaveParams { tile_origin: tile.origin, tile_size: tile.size, ray_count, ..self.wave }
+    pub fn wave_of(&self, tile: &Window, sample: u32) -> WaveParams {
+        WaveParams {
+            tile_origin: tile.origin,
+            tile_size: tile.size,
+            ray_count: camera_wave(tile),
+            sample_index: self.sample_index(sample),
+            ..self.wave
+        }
+    }
+
+    /// As kernels take it: the one sample of a pixel is none of a sequence.
+    fn sample_index(&self, sample: u32) -> u32 {
+        if self.samples > 1 { sample } else { NONE }
     }
 
     /// An empty picture, to be filled tile by tile.
@@ -441,17 +459,17 @@ impl Optics {
 fn local_light(light: &Light, origin: [f64; 3]) -> layout::Light {
     let f32s = |v: [f64; 3]| v.map(|x| x as f32);
     match *light {
-        Light::Directional { direction, irradiance } => layout::Light {
+        Light::Directional { direction, irradiance, angle } => layout::Light {
             vector: (-glam::DVec3::from(direction).normalize()).as_vec3().into(),
             kind: LIGHT_DIRECTIONAL,
             strength: f32s(irradiance),
-            pad: 0,
+            extent: (0.5 * angle).to_radians().sin() as f32,
         },
-        Light::Point { position, intensity } => layout::Light {
+        Light::Point { position, intensity, radius } => layout::Light {
             vector: f32s([0, 1, 2].map(|axis| position[axis] - origin[axis])),
             kind: LIGHT_POINT,
             strength: f32s(intensity),
-            pad: 0,
+            extent: radius as f32,
         },
     }
 }

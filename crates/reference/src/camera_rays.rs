@@ -1,8 +1,11 @@
-//! Twin of `camera_rays`: the ray through a pixel's centre, in the first cell that it meets.
+//! Twin of `camera_rays`: the camera's ray of a pixel, in the first cell that it meets.
 
 use crate::grid::Grid;
 use crate::real::{NO_HIT, Real, V3};
-use kernels::layout::{CameraParams, NONE};
+use crate::sampler::{concentric_disc, sample_2d};
+use kernels::layout::{
+    CameraParams, FILTER_INTERVALS, NONE, ORTHOGRAPHIC, SAMPLE_FILM, SAMPLE_LENS,
+};
 
 /// What a ray carries (`glsl/shared/state.glsl`).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,16 +30,48 @@ pub struct Ray<R> {
     pub tests: u32,
 }
 
-/// The ray of one pixel of the tile.
+/// Where the filter's integral reaches u, in pixels from a pixel's centre.
+fn filter_place<R: Real>(filter: &[f32], u: R) -> R {
+    let at = u * R::of_u32(FILTER_INTERVALS);
+    let low = at.floor();
+    let i = low.to_u32() as usize;
+    let (a, b) = (R::of_f32(filter[i]), R::of_f32(filter[i + 1]));
+    a + (at - low) * (b - a)
+}
+
+/// The ray of one pixel of the tile. `filter` is the plan's.
 #[must_use]
-pub fn camera_ray<R: Real>(params: &CameraParams, grid: &Grid<R>, pixel: [u32; 2]) -> Ray<R> {
-    let center = |axis: usize| R::of_u32(params.tile_origin[axis] + pixel[axis]) + R::of(0.5);
+pub fn camera_ray<R: Real>(
+    params: &CameraParams,
+    filter: &[f32],
+    grid: &Grid<R>,
+    pixel: [u32; 2],
+) -> Ray<R> {
+    let zero = R::of(0.0);
+    let at = [0, 1].map(|axis| params.tile_origin[axis] + pixel[axis]);
+    let (mut offset, mut lens) = ([zero; 2], [zero; 2]);
+    if params.sample_index != NONE {
+        offset = sample_2d(at, params.sample_index, params.seed, SAMPLE_FILM)
+            .map(|u| filter_place(filter, u));
+        let u = sample_2d(at, params.sample_index, params.seed, SAMPLE_LENS);
+        lens = concentric_disc(u).map(|x: R| R::of_f32(params.lens_radius) * x);
+    }
+    let center = at.map(|i| R::of_u32(i) + R::of(0.5));
     let scale = R::of_f32(params.scale);
-    let x = (center(0) - R::of_f32(params.half_width)) * scale;
-    let y = (R::of_f32(params.half_height) - center(1)) * scale;
-    let [right, up, forward] = [params.right, params.up, params.forward].map(V3::of_f32);
-    let direction = ((forward + right.times(x)) + up.times(y)).normalize();
-    Ray::new(V3::of_f32(params.eye), direction, grid, NONE)
+    let place = [
+        ((center[0] - R::of_f32(params.half_width)) + offset[0]) * scale,
+        ((R::of_f32(params.half_height) - center[1]) - offset[1]) * scale,
+    ];
+    let parallel = params.projection == ORTHOGRAPHIC;
+    let [seen, from] = if parallel { [[zero; 2], place] } else { [place, [zero; 2]] };
+    let slope = [0, 1].map(|i| seen[i] - lens[i] / R::of_f32(params.focus));
+    let start = [0, 1].map(|i| from[i] + lens[i]);
+    let [right, up, forward, eye] =
+        [params.right, params.up, params.forward, params.eye].map(V3::of_f32);
+    let direction = ((forward + right.times(slope[0])) + up.times(slope[1])).normalize();
+    let origin =
+        if start == [zero; 2] { eye } else { (eye + right.times(start[0])) + up.times(start[1]) };
+    Ray::new(origin, direction, grid, NONE)
 }
 
 impl<R: Real> Ray<R> {

@@ -81,9 +81,13 @@ mod tests {
             up: [0.0, 1.0, 0.0],
             half_height: 60.0,
             forward: [0.0, 0.0, 1.0],
-            pad: 0,
+            sample_index: kernels::layout::NONE,
             tile_origin: [0; 2],
             tile_size: [200, 120],
+            projection: kernels::layout::PERSPECTIVE,
+            lens_radius: 0.0,
+            focus: 1.0,
+            seed: 0,
         }
     }
 

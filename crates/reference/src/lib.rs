@@ -4,6 +4,7 @@
 //! in f64 it says how far both are from the truth. It is also what renders where no Vulkan exists.
 #![forbid(unsafe_code)]
 
+pub mod accumulate;
 mod batch;
 pub mod blend;
 pub mod camera_rays;
@@ -26,10 +27,12 @@ pub mod projection;
 pub mod real;
 pub mod refine;
 pub mod rim;
+pub mod sampler;
 pub mod shade;
 pub mod surface_hit;
 mod wave;
 
+use accumulate::accumulate;
 use bytemuck::Zeroable;
 use camera_rays::Ray;
 use disc_bin::{DiscLists, disc_bin};
@@ -129,26 +132,48 @@ impl<R: Real> Reference<R> {
     #[must_use]
     pub fn frame(&self, plan: &Plan, watch: &dyn Watch) -> Option<Picture> {
         let mut picture = plan.picture();
-        watch.stage("tracing", plan.window.pixels() as u64);
+        watch.stage("tracing", plan.window.pixels() as u64 * u64::from(plan.samples));
         let mut done = 0;
         for tile in plan.tiles() {
             let discs = self.bin_discs(plan, &tile);
             for first in (0..tile.size[1]).step_by(ROWS) {
-                if watch.interrupted() {
-                    return None;
-                }
                 let rows = Window {
                     origin: [tile.origin[0], tile.origin[1] + first],
                     size: [tile.size[0], (ROWS as u32).min(tile.size[1] - first)],
                 };
-                let (pixels, rays) = self.trace(plan, &rows, discs.as_ref());
+                let (pixels, traced) =
+                    self.sampled(plan, &rows, discs.as_ref(), watch, &mut done)?;
                 picture.put(plan, &self.outcomes, &rows, &pixels);
-                picture.rays += rays;
-                done += rows.pixels() as u64;
-                watch.done(done);
+                picture.rays += traced;
             }
         }
         Some(picture)
+    }
+
+    /// The pixels of one window with all their samples; `done` counts rays.
+    fn sampled(
+        &self,
+        plan: &Plan,
+        window: &Window,
+        discs: Option<&DiscLists>,
+        watch: &dyn Watch,
+        done: &mut u64,
+    ) -> Option<(Vec<FilmPixel>, Rays)> {
+        let (mut pixels, mut sums, mut rays) = (Vec::new(), Vec::new(), Rays::default());
+        for sample in 0..plan.samples {
+            if watch.interrupted() {
+                return None;
+            }
+            let traced = self.trace(plan, window, sample, discs);
+            pixels = traced.0;
+            rays += traced.1;
+            if plan.samples > 1 {
+                accumulate(&mut sums, &mut pixels, sample, plan.samples);
+            }
+            *done += window.pixels() as u64;
+            watch.done(*done);
+        }
+        Some((pixels, rays))
     }
 
     /// The points of each screen tile of a tile of the picture, if it is to be traced by discs and
@@ -159,17 +184,18 @@ impl<R: Real> Reference<R> {
         plan.by_discs(tile).then(|| disc_bin(&params, &self.polynomials)).flatten()
     }
 
-    /// The pixels of one window, row by row, and the rays that took; through the grid, or, inside a tile of the picture
-    /// whose discs are given, by them.
+    /// One sample of the pixels of one window, row by row, and the rays that it took; through the grid, or, inside a tile of the
+    /// picture whose discs are given, by them.
     #[must_use]
     pub fn trace(
         &self,
         plan: &Plan,
         window: &Window,
+        sample: u32,
         discs: Option<&DiscLists>,
     ) -> (Vec<FilmPixel>, Rays) {
         let grid = Grid::<R>::from(&self.grid);
-        let (camera, params) = (plan.camera_of(window), plan.wave_of(window));
+        let (camera, params) = (plan.camera_of(window, sample), plan.wave_of(window, sample));
         let traced: Vec<(FilmPixel, Rays)> = (0..window.size[0] * window.size[1])
             .into_par_iter()
             .map(|i| {
@@ -180,11 +206,12 @@ impl<R: Real> Reference<R> {
                     plan,
                     grid: &grid,
                     params: &params,
+                    pixel: in_picture,
                     film: FilmPixel::zeroed(),
                     rays: Rays { camera: 1, ..Rays::default() },
                 };
-                let ray = camera_rays::camera_ray(&camera, &grid, pixel);
-                trace.run(ray, discs.map(|discs| (discs, in_picture)));
+                let ray = camera_rays::camera_ray(&camera, &plan.filter, &grid, pixel);
+                trace.run(ray, discs);
                 (trace.film, trace.rays)
             })
             .collect();

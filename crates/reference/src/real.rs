@@ -34,6 +34,10 @@ pub trait Real:
     fn floor(self) -> Self;
     /// e^x for x ≤ 0, and 0 below −80.
     fn exp_negative(self) -> Self;
+    /// Sine for |x| ≤ π/4.
+    fn sin_octant(self) -> Self;
+    /// Cosine for |x| ≤ π/4.
+    fn cos_octant(self) -> Self;
 
     /// As GLSL defines it.
     #[must_use]
@@ -89,6 +93,22 @@ impl Real for f32 {
         let scale = Self::from_bits(((n as i32 + 127) as u32) << 23);
         if self < -80.0 { 0.0 } else { e * scale }
     }
+    #[expect(clippy::excessive_precision, reason = "the kernel's digits")]
+    fn sin_octant(self) -> Self {
+        let z = self * self;
+        let mut p = -1.951_529_589_1e-4;
+        p = p * z + 8.332_160_873_6e-3;
+        p = p * z - 1.666_665_461_1e-1;
+        p * z * self + self
+    }
+    #[expect(clippy::excessive_precision, reason = "the kernel's digits")]
+    fn cos_octant(self) -> Self {
+        let z = self * self;
+        let mut p = 2.443_315_711_809_948e-5;
+        p = p * z - 1.388_731_625_493_765e-3;
+        p = p * z + 4.166_664_568_298_827e-2;
+        (p * z * z - 0.5 * z) + 1.0
+    }
 }
 
 impl Real for f64 {
@@ -115,6 +135,12 @@ impl Real for f64 {
     }
     fn exp_negative(self) -> Self {
         if self < -80.0 { 0.0 } else { self.exp() }
+    }
+    fn sin_octant(self) -> Self {
+        self.sin()
+    }
+    fn cos_octant(self) -> Self {
+        self.cos()
     }
 }
 
@@ -228,5 +254,23 @@ mod tests {
         }
         assert_eq!(Real::exp_negative(0.0f32), 1.0);
         assert_eq!(Real::exp_negative(-81.0f32), 0.0);
+    }
+
+    /// One unit in the last place, against f64's functions, all over the octants.
+    #[test]
+    fn sine_and_cosine_are_within_one_ulp() {
+        for i in -785_398..=785_398 {
+            let x = i as f32 * 1e-6;
+            let ulp = |exact: f64| {
+                let bits = (exact as f32).abs().to_bits();
+                f64::from(f32::from_bits(bits + 1)) - f64::from(f32::from_bits(bits))
+            };
+            let (sin, cos) = f64::from(x).sin_cos();
+            let (ours_sin, ours_cos) =
+                (f64::from(Real::sin_octant(x)), f64::from(Real::cos_octant(x)));
+            assert!((ours_sin - sin).abs() <= ulp(sin), "sin {x}: {ours_sin}");
+            assert!((ours_cos - cos).abs() <= ulp(cos), "cos {x}: {ours_cos}");
+        }
+        assert_eq!((Real::sin_octant(0.0f32), Real::cos_octant(0.0f32)), (0.0, 1.0));
     }
 }

@@ -1,21 +1,24 @@
 //! Twin of `shadow_rays` and `shade`: Lambert's law at a diffuse hit, with the lights that reach it.
 
 use crate::camera_rays::Ray;
+use crate::grid::Grid;
 use crate::light::sample_light;
 use crate::real::{Real, V3};
+use crate::sampler::sample_2d;
 use crate::surface_hit::Hit;
-use kernels::layout::{Light, NONE, ObjectInfo};
+use kernels::layout::{Light, NONE, ObjectInfo, SAMPLE_LIGHT, WaveParams};
 
 /// The ray from a hit towards a light and what it would bring; `None` where the light lies behind the
-/// surface.
+/// surface. `u` says towards which place on the light.
 pub fn shadow_ray<R: Real>(
     light: &Light,
+    u: [R; 2],
     hit: &Hit<R>,
     slot: u32,
-    grid: &crate::grid::Grid<R>,
+    grid: &Grid<R>,
 ) -> Option<(Ray<R>, V3<R>)> {
     let zero = R::of(0.0);
-    let sample = sample_light(light, hit.position, [R::of(0.5); 2]);
+    let sample = sample_light(light, hit.position, u);
     let arriving = sample.arriving.times(hit.normal.dot(sample.towards).max(zero));
     let arrives = arriving.0.iter().any(|&channel| channel > zero);
     arrives.then(|| {
@@ -23,6 +26,15 @@ pub fn shadow_ray<R: Real>(
         ray.hit_t = sample.distance;
         (ray, arriving)
     })
+}
+
+/// The place on light i that a sample of a pixel of the full image asks for: its centre, unless there are
+/// several samples.
+pub fn place_on_light<R: Real>(params: &WaveParams, pixel: [u32; 2], i: u32) -> [R; 2] {
+    if params.sample_index == NONE {
+        return [R::of(0.5); 2];
+    }
+    sample_2d(pixel, params.sample_index, params.seed, SAMPLE_LIGHT + i)
 }
 
 /// The colour of a point's surface.

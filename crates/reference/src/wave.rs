@@ -12,10 +12,12 @@ use crate::grid_trace::grid_trace;
 use crate::media::{Media, ior_of, transmittance};
 use crate::optics::{reflected, refraction};
 use crate::real::{NO_HIT, Real, V3};
-use crate::shade::{lambert, point_color, shadow_ray};
+use crate::sampler::sample_1d;
+use crate::shade::{lambert, place_on_light, point_color, shadow_ray};
 use crate::surface_hit::Hit;
 use kernels::layout::{
-    CHANNELS_ALL, FilmPixel, MATERIAL_DIFFUSE, MATERIAL_GLASS, MOST_CROSSINGS, WaveParams,
+    CHANNELS_ALL, FilmPixel, MATERIAL_DIFFUSE, MATERIAL_GLASS, MOST_CROSSINGS, NONE,
+    SAMPLE_FRESNEL, WaveParams,
 };
 use plan::{Plan, Rays};
 
@@ -35,14 +37,15 @@ pub(crate) struct PixelTrace<'a, R> {
     pub plan: &'a Plan,
     pub grid: &'a Grid<R>,
     pub params: &'a WaveParams,
+    /// In the full image.
+    pub pixel: [u32; 2],
     pub film: FilmPixel,
     pub rays: Rays,
 }
 
 impl<R: Real> PixelTrace<'_, R> {
-    /// Follows a camera ray and all that come of it. By discs where they are given, with the pixel's
-    /// place in the full image.
-    pub fn run(&mut self, ray: Ray<R>, discs: Option<(&DiscLists, [u32; 2])>) {
+    /// Follows a camera ray and all that come of it. By discs where they are given.
+    pub fn run(&mut self, ray: Ray<R>, discs: Option<&DiscLists>) {
         let path = Path {
             throughput: V3::splat(R::of(1.0)),
             channels: CHANNELS_ALL,
@@ -55,8 +58,8 @@ impl<R: Real> PixelTrace<'_, R> {
         let mut from_camera = true;
         while let Some((mut ray, path)) = rays.pop() {
             match discs.take() {
-                Some((lists, pixel)) => {
-                    disc_trace(&mut ray, pixel, lists, &self.reference.polynomials);
+                Some(lists) => {
+                    disc_trace(&mut ray, self.pixel, lists, &self.reference.polynomials);
                 }
                 None => self.trace(&mut ray, false),
             }
@@ -136,19 +139,28 @@ impl<R: Real> PixelTrace<'_, R> {
 
     fn shade(&mut self, hit: &Hit<R>, object: u32, slot: u32) -> V3<R> {
         let mut irradiance = V3::splat(R::of(0.0));
-        for light in self.plan.lights.iter().take(self.params.light_count as usize) {
-            let Some((mut ray, arriving)) = shadow_ray(light, hit, slot, self.grid) else {
+        for (i, light) in (0..).zip(&self.plan.lights) {
+            let u = place_on_light(self.params, self.pixel, i);
+            let Some((mut ray, arriving)) = shadow_ray(light, u, hit, slot, self.grid) else {
                 continue;
             };
             self.rays.shadow += 1;
             self.trace(&mut ray, true);
             self.account(&ray, None, 0, false);
-            if ray.hit_slot == kernels::layout::NONE {
+            if ray.hit_slot == NONE {
                 irradiance = irradiance + arriving;
             }
         }
         let object = &self.plan.objects[object as usize];
         lambert(point_color(object, slot, &self.plan.colors), irradiance)
+    }
+
+    /// The number that decides between reflection and refraction; `None`: rays are refracted.
+    fn chance(&self, bounce: u32) -> Option<R> {
+        let params = self.params;
+        let sample = if params.sample_index == NONE { 0 } else { params.sample_index };
+        (params.fresnel != 0)
+            .then(|| sample_1d(self.pixel, sample, params.seed, SAMPLE_FRESNEL + bounce))
     }
 
     fn scatter(
@@ -186,7 +198,9 @@ impl<R: Real> PixelTrace<'_, R> {
                     let [n1, n2] = [crossing.before, crossing.after]
                         .map(|medium| R::of_f32(ior_of(medium, objects)[channel]));
                     let bent = refraction(d, n, n1, n2);
-                    (bent.total, bent.direction)
+                    let chance = self.chance(path.bounces);
+                    let reflects = bent.total || chance.is_some_and(|u| u < bent.reflectance);
+                    (reflects, if reflects { reflected(d, n) } else { bent.direction })
                 }
             };
             if !goes_on {

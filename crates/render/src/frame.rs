@@ -12,6 +12,7 @@ use crate::passes::{
     Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start,
     SurfaceHit, SurfaceHitIo,
 };
+use crate::samples::Samples;
 use crate::state::RayState;
 use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder, Timings};
@@ -41,8 +42,8 @@ pub struct FrameStats {
     pub trace: Duration,
     /// Dispatches of `grid_trace` and `disc_trace`.
     pub passes: u32,
-    /// Pixels whose camera rays have ended.
-    pixels: u64,
+    /// Camera rays whose paths have ended.
+    rays: u64,
     /// GPU time of each kernel, in milliseconds, by name, in the order of first use.
     pub kernels: Vec<(&'static str, f64)>,
 }
@@ -64,7 +65,9 @@ pub struct Renderer {
     objects: Buffer,
     colors: Buffer,
     lights: Buffer,
+    filter: Buffer,
     film: Buffer,
+    samples: Samples,
     hits: Buffer,
     live: Buffer,
     wave: WaveBuffers,
@@ -155,6 +158,8 @@ impl Renderer {
             objects: Buffer::from_slice(device, "objects", &plan.objects)?,
             colors: Buffer::from_slice(device, "point colors", &plan.colors)?,
             lights: Buffer::from_slice(device, "lights", &plan.lights)?,
+            filter: Buffer::from_slice(device, "filter", &plan.filter)?,
+            samples: Samples::new(device, plan, pixels)?,
             film: Buffer::new(device, "film", pixels * size_of::<FilmPixel>() as u64)?,
             hits: Buffer::new(device, "hits", u64::from(rays) * size_of::<Hit>() as u64)?,
             live: Buffer::new(device, "live rays", 8)?,
@@ -190,36 +195,38 @@ impl Renderer {
     ) -> Result<(Picture, FrameStats), RenderError> {
         let mut picture = plan.picture();
         let mut stats = FrameStats::default();
-        watch.stage("tracing", plan.window.pixels() as u64);
+        watch.stage("tracing", plan.window.pixels() as u64 * u64::from(plan.samples));
         let mut pixels =
             vec![EMPTY_PIXEL; (self.film.bytes() / size_of::<FilmPixel>() as u64) as usize];
         for tile in plan.tiles() {
             let started = Instant::now();
-            self.recorder.fill(self.wave.tally(), 0, self.wave.tally().bytes(), 0);
-            self.trace_tile(plan, &tile, &mut stats, watch)?;
+            for sample in 0..plan.samples {
+                self.trace_sample(plan, &tile, sample, &mut stats, watch)?;
+                let [shadow, reflected, refracted] = self.wave.read_tally()?;
+                let camera = tile.pixels() as u64;
+                picture.rays += Rays { camera, shadow, reflected, refracted };
+            }
             stats.trace += started.elapsed();
-            stats.pixels += tile.pixels() as u64;
-            let [shadow, reflected, refracted] = self.wave.read_tally()?;
-            let camera = tile.pixels() as u64;
-            picture.rays += Rays { camera, shadow, reflected, refracted };
             let pixels = &mut pixels[..tile.pixels()];
             self.film.read(0, pixels)?;
             picture.put(plan, &self.surfaces.outcomes, &tile, pixels);
-            watch.done(stats.pixels);
         }
         Ok((picture, stats))
     }
 
-    /// One tile: the wave from the camera, and all that come of it.
-    fn trace_tile(
+    /// One sample of a tile's pixels: the wave from the camera, and all that come of it. After the last
+    /// sample the film holds the mean of all.
+    fn trace_sample(
         &mut self,
         plan: &Plan,
         tile: &Window,
+        sample: u32,
         stats: &mut FrameStats,
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
-        let mut params = plan.wave_of(tile);
-        self.start_rays(plan, tile);
+        let mut params = plan.wave_of(tile, sample);
+        self.recorder.fill(self.wave.tally(), 0, self.wave.tally().bytes(), 0);
+        self.start_rays(plan, tile, sample);
         let mut traced = match self.bin_discs(plan, tile, stats)? {
             true => Traced::ByDiscs(tile.size),
             false => Traced::Camera,
@@ -234,16 +241,21 @@ impl Renderer {
             params.wave += 1;
             traced = Traced::Scattered;
         }
+        self.samples.record(&mut self.recorder, &self.film, plan, tile, sample);
+        stats.add_kernels(&self.recorder.submit()?.passes);
+        stats.rays += tile.pixels() as u64;
+        watch.done(stats.rays);
         Ok(())
     }
 
-    fn start_rays(&mut self, plan: &Plan, tile: &Window) {
+    fn start_rays(&mut self, plan: &Plan, tile: &Window, sample: u32) {
         self.passes.camera_rays.record(
             &mut self.recorder,
             &self.surfaces.grid_info,
+            &self.filter,
             &self.state.current,
             self.wave.paths(),
-            &plan.camera_of(tile),
+            &plan.camera_of(tile, sample),
         );
     }
 
@@ -300,7 +312,7 @@ impl Renderer {
             state.swap();
             stats.passes += 1;
             live.read(0, &mut left)?;
-            watch.done(stats.pixels);
+            watch.done(stats.rays);
         }
         Ok(())
     }

@@ -9,6 +9,7 @@
 mod discs;
 mod frame;
 mod passes;
+mod samples;
 mod state;
 mod wave;
 

@@ -161,7 +161,6 @@ impl When {
         match (self, value) {
             (When::Present, _) => true,
             (When::Is(names), Value::Text(text)) => names.contains(&text.as_str()),
-            (When::Above(limit), Value::Integer(integer)) => *integer > i128::from(*limit),
             _ => false,
         }
     }
@@ -314,6 +313,45 @@ pub(crate) fn camera_has_a_view(camera: &Reader<'_>) -> Result<(), Fault> {
         let message = "found a direction parallel to the line of sight from camera.eye to \
                        camera.target, expected one across it; turn it";
         return Err(("up", message.into()));
+    }
+    projection_has_its_keys(camera)?;
+    lens_is_no_wider_than_rays_can_bear(camera, distance)
+}
+
+/// Each projection has one key that says how much it shows.
+fn projection_has_its_keys(camera: &Reader<'_>) -> Result<(), Fault> {
+    let projection = camera.text("projection");
+    let foreign = if projection == "orthographic" { "vertical_fov" } else { "height" };
+    if camera.written(foreign).is_some() {
+        let owner = if foreign == "height" { "orthographic" } else { "perspective" };
+        let message = format!(
+            "belongs to projection \"{owner}\", but projection is \"{projection}\"; remove one"
+        );
+        return Err((foreign, message));
+    }
+    if projection == "orthographic" && camera.written("height").is_none() {
+        let message = "missing, expected the height of what an orthographic picture shows; add e.g. \
+                       height = 2.0";
+        return Err(("height", message.into()));
+    }
+    Ok(())
+}
+
+/// Widest lens over the distance in focus.
+const MAX_APERTURE: f64 = 1000.0;
+
+/// Rays from its rim still go forward.
+fn lens_is_no_wider_than_rays_can_bear(camera: &Reader<'_>, target: f64) -> Result<(), Fault> {
+    let aperture = camera.number("aperture");
+    let focus = camera.written("focus").map_or(target, |_| camera.number("focus"));
+    if aperture > MAX_APERTURE * focus {
+        let message = format!(
+            "found {} scene units with a focus at {}, expected at most {MAX_APERTURE} times as much; \
+             lower it",
+            plain(aperture),
+            plain(focus)
+        );
+        return Err(("aperture", message));
     }
     Ok(())
 }

@@ -155,8 +155,7 @@ pub(crate) static SCENE: Table = Table {
 
 pub(crate) static CAMERA: Table = Table {
     header: "[camera]",
-    doc: "A pinhole camera with square pixels, row 0 at the top. Left out, the view is framed on \
-          the objects.",
+    doc: "A camera with square pixels, row 0 at the top. Left out, the view is framed on the objects.",
     whole: Some(camera_has_a_view),
     keys: &[
         key("eye", POSITION, Required("[0.0, 0.4, 3.0]"), "Where the camera is, in the world."),
@@ -171,11 +170,34 @@ pub(crate) static CAMERA: Table = Table {
             "vertical_fov",
             Kind::Number(numbers(0.001, 179.0, "degrees")),
             Value("35.0"),
-            "Angle between the lower and the upper edge of the picture.",
+            "Perspective only: angle between the lower and the upper edge of the picture.",
         ),
-        announced("aperture", "Size of the lens opening, for depth of field."),
-        announced("focus", "Distance that is sharp, for depth of field."),
-        announced("projection", "Other projections than the perspective one."),
+        key(
+            "projection",
+            Kind::Choice(&["perspective", "orthographic"]),
+            Value("\"perspective\""),
+            "Rays from the eye, or parallel ones from the plane through the eye across the line of \
+             sight.",
+        ),
+        key(
+            "height",
+            LENGTH,
+            Words("none; required where the projection is orthographic", "2.0"),
+            "Orthographic only: height of what the picture shows.",
+        ),
+        key(
+            "aperture",
+            Kind::Number(numbers(0.0, LARGE, "scene units")),
+            Value("0.0"),
+            "Diameter of the lens; what is out of focus is blurred, with `image.samples` over 1. 0 is a \
+             pinhole: everything is sharp. At most 1000 times the distance in focus.",
+        ),
+        key(
+            "focus",
+            LENGTH,
+            Words("the distance from eye to target", "3.0"),
+            "Distance of the plane in focus from the eye, along the line of sight.",
+        ),
     ],
 };
 
@@ -189,7 +211,26 @@ pub(crate) static IMAGE: Table = Table {
             "samples",
             count(1, 65_536, "rays a pixel"),
             Value("1"),
-            "1 is one ray through each pixel's centre, without jitter.",
+            "1 is one ray through each pixel's centre, without jitter. With more, the colours and `A` \
+             are means over rays about the centre, which smooths edges; `Z`, `P`, `N` and `object` are \
+             the first ray's.",
+        ),
+        key(
+            "filter",
+            Kind::Choice(&["gaussian", "triangle", "box"]),
+            Value("\"gaussian\""),
+            "How the rays of a pixel lie about its centre along each axis, where it has several: \
+             normally distributed and cut at three standard deviations, thinning out evenly, or \
+             evenly.",
+        ),
+        key(
+            "filter_width",
+            Kind::Number(numbers(0.1, 16.0, "pixels")),
+            Words(
+                "3 for gaussian (half a pixel a standard deviation), 2 for triangle, 1 for box",
+                "3.0",
+            ),
+            "Side of the square about the pixel's centre that its rays lie in.",
         ),
         key(
             "transparent",
@@ -245,7 +286,8 @@ pub(crate) static RENDER: Table = Table {
             Value("\"auto\""),
             "How camera rays find their first hit: cell after cell of the grid, or each tile of \
              pixels among the points whose discs cover it. `auto` takes discs for up to 4 points a \
-             pixel, unless cells are limited or counted. Changes no pixel.",
+             pixel, unless cells are limited or counted. Several samples a pixel and orthographic \
+             views always take the grid. Changes no pixel.",
         ),
     ],
 };
@@ -290,6 +332,14 @@ pub(crate) static LIGHTS: Table = Table {
             Required("[3.0, 3.0, 3.0]"),
             "On a surface that faces the light.",
         ),
+        key_of(
+            "directional",
+            "angle",
+            Kind::Number(numbers(0.0, 179.9, "degrees")),
+            Value("0.0"),
+            "Angle that the light's disc on the sky is wide; the sun's is 0.53. More than 0 makes \
+             soft shadows, with `image.samples` over 1.",
+        ),
         key_of("point", "position", POSITION, Required("[1.0, 2.0, 0.0]"), "In the world."),
         key_of(
             "point",
@@ -298,8 +348,14 @@ pub(crate) static LIGHTS: Table = Table {
             Required("[5.0, 5.0, 5.0]"),
             "Radiant intensity I; the irradiance at distance r is I/r².",
         ),
-        announced("angle", "Angular size of a directional light, for soft shadows."),
-        announced("radius", "Radius of a point light, for soft shadows."),
+        key_of(
+            "point",
+            "radius",
+            Kind::Number(numbers(0.0, LARGE, "scene units")),
+            Value("0.0"),
+            "Radius of the sphere that shines. More than 0 makes soft shadows, with `image.samples` \
+             over 1. Nothing sees the sphere itself.",
+        ),
     ],
 };
 

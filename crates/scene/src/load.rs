@@ -5,9 +5,9 @@ use crate::error::{Problem, Source};
 use crate::keys::{self, SCENE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
-    Albedo, Background, Camera, FeatureSize, Fresnel, ImageSettings, Light, Material, MaterialKind,
-    Normals, Object, Polynomial, Primary, RayLoop, Refine, RenderSettings, Scene, SceneError,
-    Surface, Transform, Up,
+    Albedo, Background, Camera, FeatureSize, Filter, Fresnel, ImageSettings, Light, Material,
+    MaterialKind, Normals, Object, Polynomial, Primary, Projection, RayLoop, Refine,
+    RenderSettings, Scene, SceneError, Surface, Transform, Up,
 };
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -183,7 +183,12 @@ impl Camera {
             eye: table.vector("eye"),
             target: table.vector("target"),
             up: table.vector("up"),
-            vertical_fov: table.number("vertical_fov"),
+            projection: match table.text("projection").as_str() {
+                "orthographic" => Projection::Orthographic { height: table.number("height") },
+                _ => Projection::Perspective { vertical_fov: table.number("vertical_fov") },
+            },
+            aperture: table.number("aperture"),
+            focus: table.written("focus").map(|_| table.number("focus")),
         }
     }
 }
@@ -193,6 +198,12 @@ impl ImageSettings {
         Self {
             size: table.counts("size"),
             samples: table.count("samples"),
+            filter: match table.text("filter").as_str() {
+                "triangle" => Filter::Triangle,
+                "box" => Filter::Box,
+                _ => Filter::Gaussian,
+            },
+            filter_width: table.written("filter_width").map(|_| table.number("filter_width")),
             transparent: table.flag("transparent"),
         }
     }
@@ -235,10 +246,12 @@ impl Light {
             "point" => Self::Point {
                 position: table.vector("position"),
                 intensity: table.vector("intensity"),
+                radius: table.number("radius"),
             },
             _ => Self::Directional {
                 direction: table.vector("direction"),
                 irradiance: table.vector("irradiance"),
+                angle: table.number("angle"),
             },
         }
     }

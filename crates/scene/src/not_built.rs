@@ -18,8 +18,6 @@ pub(crate) enum When {
     Present,
     /// These choices.
     Is(&'static [&'static str]),
-    /// Larger integers.
-    Above(i64),
 }
 
 const fn key(path: &'static str) -> NotBuilt {
@@ -32,15 +30,8 @@ const fn value(path: &'static str, when: When, instead: &'static str) -> NotBuil
 
 /// The whole list.
 pub(crate) const NOT_BUILT: &[NotBuilt] = &[
-    key("camera.aperture"),
-    key("camera.focus"),
-    key("camera.projection"),
-    value("image.samples", When::Above(1), "use 1"),
-    value("render.fresnel", When::Is(&["sample"]), "use \"transmit\""),
     value("render.loop", When::Is(&["queue"]), "use \"images\" or \"auto\""),
     key("background.environment"),
-    key("lights.angle"),
-    key("lights.radius"),
     key("objects.filter"),
     key("objects.volume"),
     key("objects.material.texture"),
@@ -61,7 +52,6 @@ impl NotBuilt {
                 let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
                 format!("{} not built yet", quoted.join(", "))
             }
-            When::Above(limit) => format!("more than {limit} not built yet"),
         }
     }
 }

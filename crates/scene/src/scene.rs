@@ -22,7 +22,7 @@ pub struct Scene {
     pub objects: Vec<Object>,
 }
 
-/// A pinhole camera. `eye` and `target` differ, and `up` is not parallel to the line of sight.
+/// A camera. `eye` and `target` differ, and `up` is not parallel to the line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     /// World position, each -1e15 to 1e15.
@@ -31,19 +31,54 @@ pub struct Camera {
     pub target: [f64; 3],
     /// World direction that is upwards in the picture, any length from 1e-12.
     pub up: [f64; 3],
-    /// Angle between the lower and the upper edge in degrees, 0.001 to 179.
-    pub vertical_fov: f64,
+    /// How the scene comes onto the picture.
+    pub projection: Projection,
+    /// Diameter of the lens, 0 to 1e15 and at most 1000 times the distance in focus; 0: a pinhole.
+    pub aperture: f64,
+    /// Distance along the viewing axis of the plane in focus, 1e-12 to 1e15; `None`: the target's.
+    pub focus: Option<f64>,
+}
+
+/// How the scene comes onto the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Projection {
+    /// Towards the eye.
+    Perspective {
+        /// Angle between the lower and the upper edge in degrees, 0.001 to 179.
+        vertical_fov: f64,
+    },
+    /// By parallels to the viewing axis.
+    Orthographic {
+        /// Distance of the lower edge from the upper, 1e-12 to 1e15.
+        height: f64,
+    },
 }
 
 /// Size and sampling of the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImageSettings {
     /// Width and height in pixels, each 1 to 16384.
     pub size: [u32; 2],
     /// Rays a pixel, 1 to 65536. 1 is a ray through each pixel's centre.
     pub samples: u32,
+    /// How a pixel's samples lie about its centre, where it has several.
+    pub filter: Filter,
+    /// Side in pixels of the square that they lie in, 0.1 to 16; `None` is 1 for the box, 2 for the
+    /// triangle and 3 for the Gaussian.
+    pub filter_width: Option<f64>,
     /// Leave the background out and premultiply the colours by coverage.
     pub transparent: bool,
+}
+
+/// How a pixel's samples lie about its centre, along each axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Filter {
+    /// Normally distributed, cut at three standard deviations.
+    Gaussian,
+    /// Thinning out evenly towards the edges.
+    Triangle,
+    /// Evenly.
+    Box,
 }
 
 /// How rays are followed.
@@ -112,6 +147,8 @@ pub enum Light {
         direction: [f64; 3],
         /// On a surface that faces the light, W m⁻², each 0 to 1e15.
         irradiance: [f64; 3],
+        /// Angle between opposite places of its rim in degrees, 0 to 179.9; 0 casts hard shadows.
+        angle: f64,
     },
     /// Light from a point, equal in all directions.
     Point {
@@ -119,6 +156,8 @@ pub enum Light {
         position: [f64; 3],
         /// Radiant intensity I, W sr⁻¹, each 0 to 1e15: irradiance is I/r².
         intensity: [f64; 3],
+        /// Of the sphere that it is, 0 to 1e15; 0 casts hard shadows.
+        radius: f64,
     },
 }
 

@@ -1,8 +1,8 @@
 //! A scene as canonical TOML, for the header of the pictures it makes.
 
 use crate::{
-    Albedo, FeatureSize, Fresnel, Light, Material, MaterialKind, Normals, Object, Polynomial,
-    Refine, RenderSettings, Scene, Surface,
+    Albedo, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Normals, Object,
+    Polynomial, Projection, Refine, RenderSettings, Scene, Surface,
 };
 use std::fmt::{self, Write};
 
@@ -23,11 +23,34 @@ impl Scene {
             writeln!(out, "eye = {:?}", camera.eye)?;
             writeln!(out, "target = {:?}", camera.target)?;
             writeln!(out, "up = {:?}", camera.up)?;
-            writeln!(out, "vertical_fov = {:?}\n", camera.vertical_fov)?;
+            match camera.projection {
+                Projection::Perspective { vertical_fov } => {
+                    writeln!(out, "projection = \"perspective\"")?;
+                    writeln!(out, "vertical_fov = {vertical_fov:?}")?;
+                }
+                Projection::Orthographic { height } => {
+                    writeln!(out, "projection = \"orthographic\"")?;
+                    writeln!(out, "height = {height:?}")?;
+                }
+            }
+            writeln!(out, "aperture = {:?}", camera.aperture)?;
+            if let Some(focus) = camera.focus {
+                writeln!(out, "focus = {focus:?}")?;
+            }
+            writeln!(out)?;
         }
         writeln!(out, "[image]")?;
         writeln!(out, "size = {:?}", self.image.size)?;
         writeln!(out, "samples = {}", self.image.samples)?;
+        let filter = match self.image.filter {
+            Filter::Gaussian => "gaussian",
+            Filter::Triangle => "triangle",
+            Filter::Box => "box",
+        };
+        writeln!(out, "filter = \"{filter}\"")?;
+        if let Some(width) = self.image.filter_width {
+            writeln!(out, "filter_width = {width:?}")?;
+        }
         writeln!(out, "transparent = {}\n", self.image.transparent)?;
         write_render(out, &self.render)?;
         writeln!(out, "[background]")?;
@@ -57,15 +80,17 @@ fn write_render(out: &mut String, render: &RenderSettings) -> fmt::Result {
 fn write_light(out: &mut String, light: &Light) -> fmt::Result {
     writeln!(out, "\n[[lights]]")?;
     match light {
-        Light::Directional { direction, irradiance } => {
+        Light::Directional { direction, irradiance, angle } => {
             writeln!(out, "kind = \"directional\"")?;
             writeln!(out, "direction = {direction:?}")?;
-            writeln!(out, "irradiance = {irradiance:?}")
+            writeln!(out, "irradiance = {irradiance:?}")?;
+            writeln!(out, "angle = {angle:?}")
         }
-        Light::Point { position, intensity } => {
+        Light::Point { position, intensity, radius } => {
             writeln!(out, "kind = \"point\"")?;
             writeln!(out, "position = {position:?}")?;
-            writeln!(out, "intensity = {intensity:?}")
+            writeln!(out, "intensity = {intensity:?}")?;
+            writeln!(out, "radius = {radius:?}")
         }
     }
 }

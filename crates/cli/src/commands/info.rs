@@ -8,7 +8,7 @@ use crate::progress::Progress;
 use plan::Plan;
 use points::neighbors::median_spacing;
 use points::{PointSet, PointSummary, Watch};
-use scene::{Light, Scene};
+use scene::{Light, Projection, Scene};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::sync::Arc;
@@ -66,12 +66,19 @@ fn scene_json(scene: &Scene, plan: &Plan, summaries: &[Arc<PointSummary>]) -> Va
         })
         .collect();
     let camera = scene.camera.map(|camera| {
-        json!({
+        let mut fields = json!({
             "eye": camera.eye,
             "target": camera.target,
             "up": camera.up,
-            "vertical_fov": camera.vertical_fov,
-        })
+            "aperture": camera.aperture,
+        });
+        match camera.projection {
+            Projection::Perspective { vertical_fov } => {
+                fields["vertical_fov"] = json!(vertical_fov)
+            }
+            Projection::Orthographic { height } => fields["height"] = json!(height),
+        }
+        fields
     });
     let [min, max] = plan.cloud.bounds;
     json!({
@@ -105,10 +112,13 @@ fn write_scene(
     match scene.camera {
         Some(camera) => writeln!(
             text,
-            "camera   at {}, towards {}, {} degrees",
+            "camera   at {}, towards {}, {}",
             corner(camera.eye),
             corner(camera.target),
-            camera.vertical_fov
+            match camera.projection {
+                Projection::Perspective { vertical_fov } => format!("{vertical_fov} degrees"),
+                Projection::Orthographic { height } => format!("orthographic, {height} high"),
+            }
         )?,
         None => writeln!(text, "camera   framed on the scene")?,
     }

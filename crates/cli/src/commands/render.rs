@@ -7,7 +7,7 @@ use crate::input::{Input, SceneValues};
 use crate::progress::Progress;
 use crate::stats::{Measured, Row};
 use crate::{files, interrupt, memory};
-use film::FileFormat;
+use film::{FileFormat, Tone};
 use plan::{Diagnostic, Plan};
 use points::Watch;
 use std::path::Path;
@@ -38,6 +38,12 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         progress.note(
             "warning: --channels is ignored, since only EXR files hold diagnostic channels; add \
              -o FILE.exr",
+        );
+    }
+    if args.tone() != Tone::default() && formats.iter().all(|format| *format == FileFormat::Exr) {
+        progress.note(
+            "warning: --exposure and --tone are ignored, since EXR files hold the numbers as they are; \
+             add -o FILE.png",
         );
     }
     with_engine(&args.device, |engine| render(args, &input, diagnostics, engine, &progress))
@@ -97,7 +103,8 @@ fn write_pictures(
 ) -> Result<(), Failure> {
     progress.stage("writing pictures", args.outputs.len() as u64);
     for (output, written) in args.outputs.iter().zip(1..) {
-        interrupt::writing(|| Ok(film::write(&frame.film, plan.provenance(), output)?))?;
+        let (film, provenance) = (&frame.film, plan.provenance());
+        interrupt::writing(|| Ok(film::write_toned(film, provenance, args.tone(), output)?))?;
         progress.done(written);
     }
     progress.clear();

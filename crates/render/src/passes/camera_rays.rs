@@ -3,11 +3,11 @@
 use super::{bind_state, over_pixels, state_bindings};
 use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
-use kernels::layout::{CameraParams, STATE_OUT, TRACE_INFO, WAVE_PATHS};
+use kernels::layout::{CAMERA_FILTER, CameraParams, STATE_OUT, TRACE_INFO, WAVE_PATHS};
 use kernels::spirv;
 use std::sync::Arc;
 
-/// The ray through each pixel's centre, in the first cell that it meets.
+/// The camera's ray of each pixel, in the first cell that it meets.
 pub(crate) struct CameraRays {
     kernel: Kernel,
 }
@@ -17,7 +17,8 @@ impl CameraRays {
 
     pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
         let mut bindings = state_bindings(STATE_OUT).to_vec();
-        bindings.extend([TRACE_INFO, WAVE_PATHS].map(|at| (at, Binding::StorageBuffer)));
+        bindings
+            .extend([TRACE_INFO, CAMERA_FILTER, WAVE_PATHS].map(|at| (at, Binding::StorageBuffer)));
         let params = size_of::<CameraParams>();
         let kernel = Kernel::new(device, Self::NAME, &spirv::camera_rays(), &bindings, params)?;
         Ok(Self { kernel })
@@ -28,6 +29,7 @@ impl CameraRays {
         &self,
         rec: &mut Recorder,
         grid_info: &Buffer,
+        filter: &Buffer,
         out: &StateImages,
         paths: &Buffer,
         params: &CameraParams,
@@ -35,6 +37,7 @@ impl CameraRays {
         bind_state(rec.pass(Self::NAME, &self.kernel), STATE_OUT, out)
             .buffer(TRACE_INFO, grid_info)
             .buffer(WAVE_PATHS, paths)
+            .buffer(CAMERA_FILTER, filter)
             .push(params)
             .dispatch(over_pixels(params.tile_size));
     }

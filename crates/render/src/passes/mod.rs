@@ -1,5 +1,6 @@
 //! The passes of a frame. Each owns its pipeline, borrows what it works on, and offers `record`.
 
+mod accumulate;
 mod camera_rays;
 mod classify;
 mod disc_count;
@@ -13,6 +14,7 @@ mod shade;
 mod shadow_rays;
 mod surface_hit;
 
+pub(crate) use accumulate::Accumulate;
 pub(crate) use camera_rays::CameraRays;
 pub(crate) use classify::{Classify, ClassifyIo};
 pub(crate) use disc_count::DiscCount;
