@@ -3,7 +3,8 @@
 // reads   the ray state, polynomials
 //         hits             accepted, or none
 //         objects          one an object of the scene
-//         colors           three floats a point of each object that has colours, by slot
+//         grid, cells, slots, colors   the values of the points around a hit, where an object has them
+//         images, texels   textures and environment
 //         lights
 // writes  film             every pixel
 // runs    one invocation per pixel of the tile
@@ -13,27 +14,19 @@
 #define STATE_READS
 #include "layout.glsl"
 #include "math.glsl"
+#include "albedo.glsl"
+#include "environment.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = TILE_GROUP) in;
-layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
-layout(std430, binding = SHADE_COLORS) readonly buffer Colors { float colors[]; };
 layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = SHADE_FILM) writeonly buffer Film { FilmPixel film[]; };
 layout(push_constant) uniform Push { ShadeParams params; };
 
 #define INVERSE_PI 0.318309886
 #define INFINITE_DEPTH uintBitsToFloat(0x7f800000u)
-
-vec3 point_color(ObjectInfo object, uint slot) {
-    bool has_colors = object.first_color != NONE;
-    uint at = has_colors ? object.first_color + 3u * (slot - object.first_slot) : 0u;
-    vec3 color = vec3(colors[at], colors[at + 1u], colors[at + 2u]);
-    return has_colors ? color : object.albedo;
-}
 
 // What one light sends to a surface at x, by Lambert's law.
 vec3 irradiance(Light light, vec3 x, vec3 normal) {
@@ -54,7 +47,8 @@ void main() {
     Hit hit = hits[at];
     uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, hit.status >> HIT_TOTAL_SHIFT);
     if (ray.hit_slot == NONE) {
-        vec3 behind = params.transparent != 0u ? vec3(0.0) : params.background;
+        vec3 behind = background_at(params.background, ray.direction);
+        behind = params.transparent != 0u ? vec3(0.0) : behind;
         film[at] = FilmPixel(vec4(ray.color + behind, 0.0), vec4(0.0, 0.0, 0.0, INFINITE_DEPTH),
                              vec4(0.0, 0.0, 0.0, -1.0), counts);
         return;
@@ -62,7 +56,7 @@ void main() {
     uint index = polynomials[ray.hit_slot].object;
     vec3 light = vec3(0.0);
     for (uint i = 0u; i < params.light_count; ++i) light += irradiance(lights[i], hit.position, hit.normal);
-    vec3 radiance = ray.color + point_color(objects[index], ray.hit_slot) * (light * INVERSE_PI);
+    vec3 radiance = ray.color + albedo_at(index, ray.hit_slot, hit.position) * (light * INVERSE_PI);
     float depth = hit.t * dot3(ray.direction, params.forward);
     film[at] = FilmPixel(vec4(radiance, 1.0), vec4(hit.position, depth), vec4(hit.normal, float(index)), counts);
 }

@@ -76,6 +76,8 @@
 #define REFINE_OFFSETS 18
 #define REFINE_POINTS 19
 #define REFINE_OUTCOMES 20
+#define SHADE_IMAGES 21
+#define SHADE_TEXELS 22
 
 // What has become of a pixel's hit: the low byte of Hit.status.
 #define HIT_NONE 0
@@ -90,6 +92,10 @@
 #define FIT_PLANE 1
 #define FIT_INCOMPLETE 2
 #define FIT_FULL 3
+
+// What an image's texels are.
+#define IMAGE_SRGB8 0  // red, green, blue in sRGB, a byte each, from the lowest byte of a word on
+#define IMAGE_LINEAR 1 // red, green, blue as three floats
 
 #define LIGHT_DIRECTIONAL 0
 #define LIGHT_POINT 1
@@ -199,17 +205,31 @@ struct DiscTraceParams { // 28 bytes
     uint work;           // 24  loop iterations a ray may spend in this pass
 };
 
-struct ShadeParams {     // 40 bytes
-    vec3 forward;        //  0  viewing axis
-    uint light_count;    // 12
-    vec3 background;     // 16
-    uint transparent;    // 28  1: the background is left out
-    uvec2 tile_size;     // 32
+// What rays that hit nothing see.
+struct BackgroundInfo {  // 16 bytes
+    vec3 color;          //  0
+    uint environment;    // 12  an image, or NONE: color counts
 };
 
-struct ObjectInfo {      // 48 bytes
+struct ShadeParams {     // 44 bytes
+    vec3 forward;        //  0  viewing axis
+    uint light_count;    // 12
+    BackgroundInfo background; // 16
+    uvec2 tile_size;     // 32
+    uint transparent;    // 40  1: the background is left out
+};
+
+// An image whose texels lie in rows, the top row first.
+struct ImageInfo {       // 16 bytes
+    uint first;          //  0  word of its first texel in texels
+    uint width;          //  4
+    uint height;         //  8
+    uint format;         // 12  IMAGE_*
+};
+
+struct ObjectInfo {      // 80 bytes
     vec3 albedo;         //  0
-    uint first_color;    // 12  in colors, or NONE: albedo counts
+    uint first_color;    // 12  in colors: three floats a point, with a texture two; NONE: none
     uint first_slot;     // 16
     uint polynomial;     // 20  FIT_FULL or FIT_INCOMPLETE: what refinement fits first
     uint max_iterations; // 24  of the refinement; 0: hits are taken as they are
@@ -217,7 +237,9 @@ struct ObjectInfo {      // 48 bytes
     uint slot_count;     // 32
     float weight_scale;  // 36  h over the width of the weights
     uint blends;         // 40  1: normals are blended over the polynomials around a hit
-    uint pad;            // 44
+    uint texture;        // 44  an image, or NONE
+    vec4 texture_u;      // 48  column over width at x is dot(xyz, x) + w, where first_color is NONE
+    vec4 texture_v;      // 64  row over height
 };
 
 struct Light {           // 32 bytes

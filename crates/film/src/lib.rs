@@ -10,14 +10,16 @@ mod eight_bit;
 mod error;
 mod exr_read;
 mod exr_write;
+mod image_read;
 mod picture;
 mod srgb;
 mod store;
 
 pub use error::FilmError;
 pub use exr_read::{ExrPicture, read_exr};
+pub use image_read::{Image, Texels, read_image};
 pub use picture::{Film, Provenance, Window};
-pub use srgb::srgb_byte;
+pub use srgb::{linear_from_srgb, srgb_byte};
 pub use store::store;
 
 use std::ffi::OsStr;
@@ -75,5 +77,7 @@ pub fn write(film: &Film, provenance: &Provenance, path: &Path) -> Result<(), Fi
     store(path, &bytes)
 }
 
+#[cfg(test)]
+mod image_read_tests;
 #[cfg(test)]
 mod tests;

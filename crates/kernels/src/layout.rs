@@ -152,6 +152,10 @@ constants! {
     REFINE_POINTS = 19;
     /// Binding of `refine`: [`FitOutcome`]s.
     REFINE_OUTCOMES = 20;
+    /// Binding of `shade`: [`ImageInfo`]s.
+    SHADE_IMAGES = 21;
+    /// Binding of `shade`: a table of sRGB, and the texels of all images.
+    SHADE_TEXELS = 22;
     /// A pixel that hit nothing.
     HIT_NONE = 0;
     /// A hit that stands.
@@ -173,6 +177,10 @@ constants! {
     FIT_INCOMPLETE = 2;
     /// The polynomial with linear terms.
     FIT_FULL = 3;
+    /// An image of red, green, blue in sRGB, a byte each, from the lowest byte of a word on.
+    IMAGE_SRGB8 = 0;
+    /// An image of red, green, blue as three floats, linear.
+    IMAGE_LINEAR = 1;
     /// A light infinitely far away.
     LIGHT_DIRECTIONAL = 0;
     /// A light at a point.
@@ -412,6 +420,17 @@ pub struct DiscTraceParams {
 }
 gpu_layout!(DiscTraceParams, 28, { ranks: 0, tile_size: 16, work: 24 });
 
+/// What rays that hit nothing see.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct BackgroundInfo {
+    /// Linear RGB.
+    pub color: [f32; 3],
+    /// An image instead, or `NONE`.
+    pub environment: u32,
+}
+gpu_layout!(BackgroundInfo, 16, { color: 0, environment: 12 });
+
 /// Push constants of `shade`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -420,16 +439,31 @@ pub struct ShadeParams {
     pub forward: [f32; 3],
     /// Lights of the scene.
     pub light_count: u32,
-    /// Linear RGB.
-    pub background: [f32; 3],
-    /// 1 where the background is left out.
-    pub transparent: u32,
+    /// What rays that hit nothing see.
+    pub background: BackgroundInfo,
     /// Columns and rows of the tile.
     pub tile_size: [u32; 2],
+    /// 1 where the background is left out.
+    pub transparent: u32,
 }
-gpu_layout!(ShadeParams, 40, {
-    forward: 0, light_count: 12, background: 16, transparent: 28, tile_size: 32,
+gpu_layout!(ShadeParams, 44, {
+    forward: 0, light_count: 12, background: 16, tile_size: 32, transparent: 40,
 });
+
+/// An image whose texels lie in rows, the top row first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ImageInfo {
+    /// Word of its first texel among all texels.
+    pub first: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// One of `IMAGE_*`.
+    pub format: u32,
+}
+gpu_layout!(ImageInfo, 16, { first: 0, width: 4, height: 8, format: 12 });
 
 /// What shading needs of an object.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -437,7 +471,8 @@ gpu_layout!(ShadeParams, 40, {
 pub struct ObjectInfo {
     /// Linear RGB, where the points' colours do not count.
     pub albedo: [f32; 3],
-    /// First float of the object's colours, or `NONE`.
+    /// First float of what its points have: three floats of colour each, or, with a texture, their two
+    /// places in it; `NONE` where they have neither.
     pub first_color: u32,
     /// First slot of the object.
     pub first_slot: u32,
@@ -453,13 +488,16 @@ pub struct ObjectInfo {
     pub weight_scale: f32,
     /// 1: normals are blended over the polynomials around a hit.
     pub blends: u32,
-    /// Unused.
-    pub pad: u32,
+    /// An image, or `NONE`.
+    pub texture: u32,
+    /// Column over width at x is dot(xyz, x) + w, where points have no places in the texture.
+    pub texture_u: [f32; 4],
+    /// Row over height.
+    pub texture_v: [f32; 4],
 }
-gpu_layout!(ObjectInfo, 48, {
+gpu_layout!(ObjectInfo, 80, {
     albedo: 0, first_color: 12, first_slot: 16, polynomial: 20, max_iterations: 24, tolerance: 28,
-    slot_count: 32, weight_scale: 36, blends: 40,
-    pad: 44,
+    slot_count: 32, weight_scale: 36, blends: 40, texture: 44, texture_u: 48, texture_v: 64,
 });
 
 /// One light.
@@ -523,7 +561,9 @@ pub const STRUCTS: &[StructLayout] = &[
     DepthRanks::LAYOUT,
     DiscParams::LAYOUT,
     DiscTraceParams::LAYOUT,
+    BackgroundInfo::LAYOUT,
     ShadeParams::LAYOUT,
+    ImageInfo::LAYOUT,
     ObjectInfo::LAYOUT,
     Light::LAYOUT,
     Hit::LAYOUT,

@@ -4,6 +4,7 @@
 //! in f64 it says how far both are from the truth. It is also what renders where no Vulkan exists.
 #![forbid(unsafe_code)]
 
+pub mod albedo;
 mod batch;
 pub mod blend;
 pub mod camera_rays;
@@ -11,12 +12,14 @@ pub mod disc;
 pub mod disc_bin;
 pub mod disc_trace;
 pub mod eigen;
+pub mod environment;
 pub mod fit;
 pub mod fit_polynomials;
 pub mod gap;
 pub mod grid;
 pub mod grid_build;
 pub mod grid_trace;
+pub mod image;
 pub mod least_squares;
 pub mod polynomial;
 pub mod projection;
@@ -149,12 +152,15 @@ impl<R: Real> Reference<R> {
     pub fn trace(&self, plan: &Plan, window: &Window, discs: Option<&DiscLists>) -> Vec<FilmPixel> {
         let grid = Grid::<R>::from(&self.grid);
         let (camera, params) = (plan.camera_of(window), plan.shade_of(window));
-        let shading = shade::Shading {
-            params: &params,
+        let albedos = albedo::Albedos {
+            grid: &grid,
+            lists: &self.lists,
+            polynomials: &self.polynomials,
             objects: &plan.objects,
             colors: &plan.colors,
-            lights: &plan.lights,
+            images: image::Images { infos: &plan.images, texels: &plan.texels },
         };
+        let shading = shade::Shading { params: &params, albedos, lights: &plan.lights };
         (0..window.size[0] * window.size[1])
             .into_par_iter()
             .map(|i| {

@@ -1,29 +1,21 @@
 //! Twin of `shade`: Lambert's law at the hit, the background where there is none.
 
+use crate::albedo::Albedos;
 use crate::camera_rays::Ray;
+use crate::environment::background_at;
 use crate::real::{Real, V3};
 use crate::surface_hit::Hit;
-use kernels::layout::{FilmPixel, LIGHT_POINT, Light, NONE, ObjectInfo, ShadeParams};
+use kernels::layout::{FilmPixel, LIGHT_POINT, Light, ShadeParams};
 
 /// What shading reads besides the ray.
 #[derive(Debug, Clone, Copy)]
-pub struct Shading<'a> {
+pub struct Shading<'a, R> {
     /// Camera axis, background, light count.
     pub params: &'a ShadeParams,
-    /// One an object.
-    pub objects: &'a [ObjectInfo],
-    /// Three floats a point.
-    pub colors: &'a [f32],
+    /// Colours of surfaces, and the images.
+    pub albedos: Albedos<'a, R>,
     /// All lights.
     pub lights: &'a [Light],
-}
-
-fn point_color<R: Real>(shading: &Shading<'_>, object: &ObjectInfo, slot: u32) -> V3<R> {
-    if object.first_color == NONE {
-        return V3::of_f32(object.albedo);
-    }
-    let at = (object.first_color + 3 * (slot - object.first_slot)) as usize;
-    V3([0, 1, 2].map(|channel| R::of_f32(shading.colors[at + channel])))
 }
 
 /// What one light sends to a surface at x, by Lambert's law.
@@ -48,12 +40,13 @@ pub fn shade<R: Real>(
     ray: &Ray<R>,
     hit: Option<(Hit<R>, u32)>,
     iterations: u32,
-    shading: &Shading<'_>,
+    shading: &Shading<'_, R>,
 ) -> FilmPixel {
     let params = shading.params;
     let counts = [ray.tests, ray.cells, ray.hit_slot, iterations];
     let Some((hit, object)) = hit else {
-        let [r, g, b] = if params.transparent != 0 { [0.0; 3] } else { params.background };
+        let behind = || background_at(shading.albedos.images, &params.background, ray.direction);
+        let [r, g, b] = if params.transparent != 0 { [0.0; 3] } else { behind().to_f32() };
         return FilmPixel {
             color: [r, g, b, 0.0],
             position_depth: [0.0, 0.0, 0.0, f32::INFINITY],
@@ -67,7 +60,7 @@ pub fn shade<R: Real>(
         .iter()
         .take(params.light_count as usize)
         .fold(V3::splat(R::of(0.0)), |sum, light| sum + irradiance(light, x, normal));
-    let color = point_color(shading, &shading.objects[object as usize], ray.hit_slot);
+    let color = shading.albedos.albedo_at(object, ray.hit_slot, x);
     let [r, g, b] = (color * light.times(R::of(std::f64::consts::FRAC_1_PI))).to_f32();
     let [px, py, pz] = x.to_f32();
     let [nx, ny, nz] = normal.to_f32();

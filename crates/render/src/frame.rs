@@ -3,8 +3,8 @@
 use crate::RenderError;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
-    CameraRays, DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Records, Refine, RefineIo, Shade,
-    ShadeIo, SurfaceHit, SurfaceHitIo,
+    AlbedoIo, CameraRays, DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Records, Refine,
+    RefineIo, Shade, ShadeIo, SurfaceHit, SurfaceHitIo,
 };
 use crate::state::RayState;
 use gpu::{Buffer, Device, Recorder, Timings};
@@ -55,6 +55,8 @@ pub struct Renderer {
     surfaces: Surfaces,
     objects: Buffer,
     colors: Buffer,
+    images: Buffer,
+    texels: Buffer,
     lights: Buffer,
     film: Buffer,
     hits: Buffer,
@@ -106,6 +108,8 @@ impl Renderer {
             surfaces,
             objects: Buffer::from_slice(device, "objects", &plan.objects)?,
             colors: Buffer::from_slice(device, "point colors", &plan.colors)?,
+            images: Buffer::from_slice(device, "images", &plan.images)?,
+            texels: texel_buffer(device, plan)?,
             lights: Buffer::from_slice(device, "lights", &plan.lights)?,
             film: Buffer::new(device, "film", film_bytes)?,
             hits: Buffer::new(device, "hits", tile_pixels * size_of::<Hit>() as u64)?,
@@ -310,10 +314,14 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         let io = ShadeIo {
             state: &self.state.current,
-            polynomials: &self.surfaces.polynomials,
+            albedos: AlbedoIo {
+                surfaces: &self.surfaces,
+                objects: &self.objects,
+                colors: &self.colors,
+                images: &self.images,
+                texels: &self.texels,
+            },
             hits: &self.hits,
-            objects: &self.objects,
-            colors: &self.colors,
             lights: &self.lights,
             film: &self.film,
         };
@@ -321,4 +329,15 @@ impl Renderer {
         stats.add_kernels(&self.recorder.submit()?.passes);
         Ok(())
     }
+}
+
+/// The texels of all images, if the device takes so many.
+fn texel_buffer(device: &Arc<Device>, plan: &Plan) -> Result<Buffer, RenderError> {
+    let needed = size_of_val(plan.texels.as_slice()) as u64;
+    let limit = device.limits().max_storage_buffer_range;
+    if needed > limit {
+        let images = plan.image_files.join(", ");
+        return Err(RenderError::Images { images, needed, limit });
+    }
+    Ok(Buffer::from_slice(device, "texels", &plan.texels)?)
 }

@@ -26,8 +26,9 @@ mod tests;
 
 pub use error::SceneError;
 pub use scene::{
-    Albedo, Background, Camera, FeatureSize, Fresnel, ImageSettings, Light, Material, Normals,
-    Object, Polynomial, Primary, RayLoop, Refine, RenderSettings, Scene, Surface, Up,
+    Albedo, Background, Camera, ColorMap, FeatureSize, Fresnel, ImageFile, ImageSettings, Light,
+    Material, Normals, Object, Polynomial, Primary, RayLoop, Refine, RenderSettings, Scene,
+    Surface, TextureAxis, Up,
 };
 pub use schema::json_schema;
 pub use transform::Transform;

@@ -1,5 +1,6 @@
 //! The passes of a frame. Each owns its pipeline, borrows what it works on, and offers `record`.
 
+mod albedo;
 mod camera_rays;
 mod disc_count;
 mod disc_emit;
@@ -10,6 +11,7 @@ mod refine;
 mod shade;
 mod surface_hit;
 
+pub(crate) use albedo::AlbedoIo;
 pub(crate) use camera_rays::CameraRays;
 pub(crate) use disc_count::DiscCount;
 pub(crate) use disc_emit::DiscEmit;

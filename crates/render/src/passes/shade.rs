@@ -1,22 +1,17 @@
 //! The pass `shade`.
 
-use super::{bind_state, over_pixels, state_bindings};
+use super::{AlbedoIo, bind_state, over_pixels, state_bindings};
 use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
-use kernels::layout::{
-    SHADE_COLORS, SHADE_FILM, SHADE_LIGHTS, SHADE_OBJECTS, STATE_IN, ShadeParams, TRACE_HITS,
-    TRACE_POLYNOMIALS,
-};
+use kernels::layout::{SHADE_FILM, SHADE_LIGHTS, STATE_IN, ShadeParams, TRACE_HITS};
 use kernels::spirv;
 use std::sync::Arc;
 
 /// What the pass works on.
 pub(crate) struct ShadeIo<'a> {
     pub state: &'a StateImages,
-    pub polynomials: &'a Buffer,
+    pub albedos: AlbedoIo<'a>,
     pub hits: &'a Buffer,
-    pub objects: &'a Buffer,
-    pub colors: &'a Buffer,
     pub lights: &'a Buffer,
     pub film: &'a Buffer,
 }
@@ -31,8 +26,8 @@ impl Shade {
 
     pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
         let mut bindings = state_bindings(STATE_IN).to_vec();
-        let buffers =
-            [TRACE_POLYNOMIALS, TRACE_HITS, SHADE_OBJECTS, SHADE_COLORS, SHADE_LIGHTS, SHADE_FILM];
+        bindings.extend(AlbedoIo::BINDINGS);
+        let buffers = [TRACE_HITS, SHADE_LIGHTS, SHADE_FILM];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         let params = size_of::<ShadeParams>();
         let kernel = Kernel::new(device, Self::NAME, &spirv::shade(), &bindings, params)?;
@@ -41,11 +36,10 @@ impl Shade {
 
     /// Records the shading of a tile whose rays have all ended.
     pub fn record(&self, rec: &mut Recorder, io: ShadeIo<'_>, params: &ShadeParams) {
-        bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, io.state)
-            .buffer(TRACE_POLYNOMIALS, io.polynomials)
+        let pass = bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, io.state);
+        io.albedos
+            .bind(pass)
             .buffer(TRACE_HITS, io.hits)
-            .buffer(SHADE_OBJECTS, io.objects)
-            .buffer(SHADE_COLORS, io.colors)
             .buffer(SHADE_LIGHTS, io.lights)
             .buffer(SHADE_FILM, io.film)
             .push(params)
