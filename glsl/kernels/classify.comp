@@ -3,6 +3,7 @@
 //
 // reads   the ray state, objects, polynomials
 //         hits             accepted, or none
+//         images, texels   the environment
 // writes  paths            absorption on the way is taken from their throughput
 //         film             every pixel in the first wave; after that, the background where a ray ends
 //         lit              1 for a ray that hit a diffuse surface
@@ -13,6 +14,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #include "layout.glsl"
+#include "environment.glsl"
 #include "math.glsl"
 #include "state.glsl"
 #include "index.glsl"
@@ -65,7 +67,7 @@ void main() {
 
     bool from_camera = params.wave == 0u;
     bool left_out = from_camera && params.transparent != 0u;
-    vec3 behind = found || left_out ? vec3(0.0) : throughput * params.background;
+    vec3 behind = found || left_out ? vec3(0.0) : throughput * background_at(params.background, ray.direction);
     if (from_camera) {
         float depth = hit.t * dot3(ray.direction, params.forward);
         uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, hit.status >> HIT_TOTAL_SHIFT);

@@ -2,6 +2,7 @@
 // section 4).
 //
 // reads   the ray state, grid, hits, objects, polynomials, paths
+//         images, texels   the environment
 //         next             offsets of each ray's rays in the next wave, and one behind the last
 // writes  the ray state, next_paths   the next wave
 //         film             the background, in the direction of rays that may not go on
@@ -15,6 +16,7 @@
 #define STATE_READS
 #define STATE_WRITES
 #include "layout.glsl"
+#include "environment.glsl"
 #include "math.glsl"
 #include "grid.glsl"
 #include "optics.glsl"
@@ -97,7 +99,7 @@ void main() {
             if (reflects) atomicAdd(reflected_count, 1u);
             else atomicAdd(refracted_count, 1u);
         } else {
-            write_channels(paths[at].pixel, channels, throughput * params.background);
+            write_channels(paths[at].pixel, channels, throughput * background_at(params.background, direction));
         }
     }
 }

@@ -101,6 +101,8 @@
 #define CHANNELS_ALL 7 // a path's channels: 1 red, 2 green, 4 blue
 #define CAMERA_FILTER 28
 #define FILM_SUMS 29
+#define SHADE_IMAGES 30
+#define SHADE_TEXELS 31
 
 // What has become of a pixel's hit: the low byte of Hit.status.
 #define HIT_NONE 0
@@ -115,6 +117,10 @@
 #define FIT_PLANE 1
 #define FIT_INCOMPLETE 2
 #define FIT_FULL 3
+
+// What an image's texels are.
+#define IMAGE_SRGB8 0  // red, green, blue in sRGB, a byte each, from the lowest byte of a word on
+#define IMAGE_LINEAR 1 // red, green, blue as three floats
 
 #define LIGHT_DIRECTIONAL 0
 #define LIGHT_POINT 1
@@ -258,12 +264,17 @@ struct DiscTraceParams { // 28 bytes
     uint work;           // 24  loop iterations a ray may spend in this pass
 };
 
+// What rays that hit nothing see.
+struct BackgroundInfo {  // 16 bytes
+    vec3 color;          //  0
+    uint environment;    // 12  an image, or NONE: color counts
+};
+
 // Of the kernels that scatter and shade the rays of a wave.
-struct WaveParams {      // 76 bytes
+struct WaveParams {      // 80 bytes
     vec3 forward;        //  0  viewing axis
     uint ray_count;      // 12  of the wave; of shadow_rays and shade: hits on diffuse surfaces
-    vec3 background;     // 16
-    uint transparent;    // 28  1: camera rays leave the background out
+    BackgroundInfo background; // 16
     uvec2 tile_origin;   // 32  in the full image, pixels
     uvec2 tile_size;     // 40
     uint wave;           // 48  0: rays from the camera
@@ -273,11 +284,20 @@ struct WaveParams {      // 76 bytes
     uint light;          // 64  the one that shadow rays go to now
     uint light_count;    // 68
     uint sample_index;   // 72  of the pixel; NONE: there is one alone, and lights have no extent
+    uint transparent;    // 76  1: camera rays leave the background out
 };
 
-struct ObjectInfo {      // 80 bytes
+// An image whose texels lie in rows, the top row first.
+struct ImageInfo {       // 16 bytes
+    uint first;          //  0  word of its first texel in texels
+    uint width;          //  4
+    uint height;         //  8
+    uint format;         // 12  IMAGE_*
+};
+
+struct ObjectInfo {      // 112 bytes
     vec3 albedo;         //  0  of a mirror: the share reflected
-    uint first_color;    // 12  in colors, or NONE: albedo counts
+    uint first_color;    // 12  in colors: three floats a point, with a texture two; NONE: none
     uint first_slot;     // 16
     uint polynomial;     // 20  FIT_FULL or FIT_INCOMPLETE: what refinement fits first
     uint max_iterations; // 24  of the refinement; 0: hits are taken as they are
@@ -285,11 +305,13 @@ struct ObjectInfo {      // 80 bytes
     uint slot_count;     // 32
     float weight_scale;  // 36  h over the width of the weights
     uint blends;         // 40  1: normals are blended over the polynomials around a hit
-    uint material;       // 44  MATERIAL_*
-    vec3 ior;            // 48  of glass, by channel
-    int priority;        // 60  of glass, among overlapping media
-    vec3 absorption;     // 64  of glass, per unit of length
-    uint pad;            // 76
+    uint texture;        // 44  an image, or NONE
+    vec4 texture_u;      // 48  column over width at x is dot(xyz, x) + w, where first_color is NONE
+    vec4 texture_v;      // 64  row over height
+    vec3 ior;            // 80  of glass, by channel
+    uint material;       // 92  MATERIAL_*
+    vec3 absorption;     // 96  of glass, per unit of length
+    int priority;        // 108 of glass, among overlapping media
 };
 
 struct Light {           // 32 bytes

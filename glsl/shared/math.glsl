@@ -53,4 +53,27 @@ float cos_octant(float x) {
     p = p * z + 4.166664568298827e-2;
     return (p * z * z - 0.5 * z) + 1.0;
 }
+
+// The angle of (x, y) from the x axis, -pi to pi; 0 for (0, 0). Error under 4 ulp.
+// Of the smaller part over the larger, less a quarter of pi where that is over tan(pi / 8): the
+// polynomial is that of atanf in S. Moshier's Cephes library.
+float arc_tangent(float y, float x) {
+    float across = abs(y);
+    float along = abs(x);
+    float lesser = min(across, along);
+    float larger = max(across, along);
+    bool steep = lesser > 0.414213562 * larger;
+    float over = steep ? lesser - larger : lesser;
+    float under = steep ? lesser + larger : larger;
+    float t = over / (under > 0.0 ? under : 1.0);
+    float z = t * t;
+    float p = 8.05374449538e-2;
+    p = p * z - 1.38776856032e-1;
+    p = p * z + 1.99777106478e-1;
+    p = p * z - 3.33329491539e-1;
+    float angle = (p * z * t + t) + (steep ? 0.785398163 : 0.0);
+    angle = across > along ? 1.57079633 - angle : angle;
+    angle = x < 0.0 ? 3.14159265 - angle : angle;
+    return y < 0.0 ? -angle : angle;
+}
 #endif

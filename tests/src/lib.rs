@@ -11,12 +11,14 @@
 
 mod shapes;
 
-pub use shapes::{fibonacci_sphere, grid_points, moved, random, set_of, wavy_sheet};
+pub use shapes::{
+    fibonacci_sphere, grid_points, moved, random, set_of, wavy_sheet, with_attribute,
+};
 
 use film::Film;
 use gpu::{Device, DeviceChoice, Instance, InstanceOptions};
 use kernels::layout;
-use plan::{Picture, Plan};
+use plan::{Picture, Plan, SceneImages};
 use points::{PointSet, Unwatched};
 use reference::Reference;
 use render::{Records, Renderer};
@@ -118,13 +120,19 @@ pub fn render_twin(plan: &Plan) -> Rendered {
 /// one object.
 #[must_use]
 pub fn plan_of(scene_text: &str, sets: &[PointSet]) -> Plan {
+    plan_with(scene_text, sets, &SceneImages::default())
+}
+
+/// The same with the images that the text names.
+#[must_use]
+pub fn plan_with(scene_text: &str, sets: &[PointSet], images: &SceneImages) -> Plan {
     let mut text = scene_text.to_owned();
     if !text.contains("[[objects]]") {
         text += "\n[[objects]]\npoints = \"generated.ply\"\n";
     }
     let scene = Scene::from_toml(&text, Path::new("generated.toml"), &[]).expect("a valid scene");
     let sets: Vec<Arc<PointSet>> = sets.iter().cloned().map(Arc::new).collect();
-    Plan::new(&scene, &sets, None, Up::Y).expect("a plan")
+    Plan::new(&scene, &sets, images, None, Up::Y).expect("a plan")
 }
 
 /// Fails unless both are the same to the bit: polynomials, grid, picture, and points tested.

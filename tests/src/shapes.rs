@@ -1,12 +1,20 @@
 //! Point sets whose surfaces are known in closed form.
 
-use points::PointSet;
+use points::{Attribute, PointSet, Values};
 
 /// A set of positions, without colours.
 #[must_use]
 pub fn set_of(positions: Vec<[f64; 3]>) -> PointSet {
     let file_index = (0..positions.len() as u32).collect();
     PointSet { positions, file_index, ..PointSet::default() }
+}
+
+/// The set with another attribute, a function of the position.
+#[must_use]
+pub fn with_attribute(mut set: PointSet, name: &str, value: impl Fn([f64; 3]) -> f64) -> PointSet {
+    let values = Values::F64(set.positions.iter().map(|&p| value(p)).collect());
+    set.attributes.push(Attribute { name: name.to_owned(), values });
+    set
 }
 
 /// Even points on the unit sphere: the spherical Fibonacci lattice.

@@ -111,6 +111,7 @@ impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
         match error {
             RenderError::Interrupted => Self::interrupted(),
+            error @ RenderError::Images { .. } => Self::new(Exit::Exhausted, &error),
             // The device was open already, so it is the device that gave up.
             RenderError::Gpu(error) => Self::new(Exit::Exhausted, &error),
         }

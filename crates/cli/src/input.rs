@@ -4,10 +4,11 @@ use crate::args::{Overrides, UpAxis};
 use crate::errors::Failure;
 use crate::memory;
 use crate::progress::Progress;
-use plan::{Plan, Window};
+use plan::{Plan, SceneImages, Window};
 use points::{PointSet, Watch};
-use scene::{Scene, Up};
+use scene::{Albedo, ImageFile, Object, Scene, Up};
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -110,7 +111,34 @@ impl Input {
     /// Every file that the picture is made from.
     pub fn files(&self) -> Vec<&Path> {
         let points = self.scene.objects.iter().map(|object| object.points.as_path());
-        std::iter::once(self.path.as_path()).chain(points).collect()
+        let images = self.images().map(|image| image.path.as_path());
+        std::iter::once(self.path.as_path()).chain(points).chain(images).collect()
+    }
+
+    /// Every image that the scene names.
+    fn images(&self) -> impl Iterator<Item = &ImageFile> {
+        let textures = self.scene.objects.iter().filter_map(texture_of);
+        self.scene.background.environment.iter().chain(textures)
+    }
+
+    /// Reads the images, each file once.
+    fn read_images(&self, progress: &Progress) -> Result<SceneImages, Failure> {
+        let mut read: HashMap<PathBuf, Arc<film::Image>> = HashMap::new();
+        progress.stage("reading images", self.images().count() as u64);
+        for image in self.images() {
+            let file = same_file(&image.path);
+            if let Entry::Vacant(place) = read.entry(file) {
+                place.insert(Arc::new(film::read_image(&image.path)?));
+            }
+        }
+        progress.clear();
+        let image_of = |image: &ImageFile| read.get(&same_file(&image.path)).map(Arc::clone);
+        Ok(SceneImages {
+            environment: self.scene.background.environment.as_ref().and_then(image_of),
+            textures: (self.scene.objects.iter())
+                .map(|object| texture_of(object).and_then(image_of))
+                .collect(),
+        })
     }
 
     /// Name in tables and statistics.
@@ -130,7 +158,7 @@ impl Input {
         let mut sets = Vec::new();
         for object in &self.scene.objects {
             let path = &object.points;
-            let file = fs::canonicalize(path).unwrap_or_else(|_| path.clone());
+            let file = same_file(path);
             let set = match read.get(&file) {
                 Some(set) => Arc::clone(set),
                 None => {
@@ -144,7 +172,8 @@ impl Input {
         Ok(sets)
     }
 
-    /// Plans the render. This checks whatever of the scene depends on its points.
+    /// Reads the images and plans the render. This checks whatever of the scene depends on its points and
+    /// images.
     pub fn plan(
         &self,
         sets: &[Arc<PointSet>],
@@ -152,10 +181,29 @@ impl Input {
         progress: &Progress,
     ) -> Result<Plan, Failure> {
         memory::require_points(sets.iter().map(|set| set.len() as u64).sum())?;
+        let images = self.read_images(progress)?;
         progress.stage("sorting points", 1);
-        let plan = Plan::new(&self.scene, sets, crop, self.up)?;
+        let plan = Plan::new(&self.scene, sets, &images, crop, self.up)?;
         progress.clear();
+        for image in &plan.cleaned {
+            progress.note(&format!(
+                "warning: {}: {} pixels were changed: {}",
+                image.file, image.pixels, image.rule
+            ));
+        }
         Ok(plan)
+    }
+}
+
+/// One name for all names of a file.
+fn same_file(path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf())
+}
+
+fn texture_of(object: &Object) -> Option<&ImageFile> {
+    match &object.material.albedo {
+        Albedo::Texture { file, .. } => Some(file),
+        _ => None,
     }
 }
 

@@ -81,6 +81,17 @@ pub enum FilmError {
         /// What the system said.
         source: io::Error,
     },
+    /// The file is no image that a scene can use.
+    #[error(
+        "{}: expected an image in PNG, JPEG, OpenEXR or Radiance HDR: {reason}; export it again",
+        path.display()
+    )]
+    NotImage {
+        /// The input as given.
+        path: PathBuf,
+        /// What was found.
+        reason: String,
+    },
     /// The file is not a picture that can be read here.
     #[error("{}: expected an OpenEXR picture: {reason}; export it again", path.display())]
     NotExr {

@@ -10,6 +10,7 @@ mod eight_bit;
 mod error;
 mod exr_read;
 mod exr_write;
+mod image_read;
 mod picture;
 mod srgb;
 mod store;
@@ -17,8 +18,9 @@ mod tone;
 
 pub use error::FilmError;
 pub use exr_read::{ExrPicture, read_exr};
+pub use image_read::{Image, Texels, read_image};
 pub use picture::{Film, Provenance, Window};
-pub use srgb::srgb_byte;
+pub use srgb::{linear_from_srgb, srgb_byte};
 pub use store::store;
 pub use tone::{Tone, ToneCurve};
 
@@ -93,5 +95,7 @@ pub fn write_toned(
     store(path, &bytes)
 }
 
+#[cfg(test)]
+mod image_read_tests;
 #[cfg(test)]
 mod tests;

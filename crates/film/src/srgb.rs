@@ -8,6 +8,11 @@ pub fn srgb_byte(linear: f32) -> u8 {
     unit_byte(encoded)
 }
 
+/// Decodes a value of 0..=1.
+pub fn linear_from_srgb(v: f64) -> f64 {
+    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+}
+
 /// A value of 0..=1 as 0..=255, rounded to nearest.
 pub(crate) fn unit_byte(value: f64) -> u8 {
     // NaN passes through `clamp`; the cast makes it 0.
@@ -41,9 +46,7 @@ mod tests {
     #[test]
     fn every_byte_comes_back() {
         for byte in 0..=255u8 {
-            let v = f64::from(byte) / 255.0;
-            let linear = if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
-            assert_eq!(srgb_byte(linear as f32), byte);
+            assert_eq!(srgb_byte(linear_from_srgb(f64::from(byte) / 255.0) as f32), byte);
         }
     }
 }

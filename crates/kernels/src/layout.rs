@@ -190,6 +190,10 @@ constants! {
     CAMERA_FILTER = 28;
     /// Binding of `accumulate`: [`FilmSum`]s.
     FILM_SUMS = 29;
+    /// Binding of `shade`: [`ImageInfo`]s.
+    SHADE_IMAGES = 30;
+    /// Binding of `shade`: a table of sRGB, and the texels of all images.
+    SHADE_TEXELS = 31;
     /// A pixel that hit nothing.
     HIT_NONE = 0;
     /// A hit that stands.
@@ -211,6 +215,10 @@ constants! {
     FIT_INCOMPLETE = 2;
     /// The polynomial with linear terms.
     FIT_FULL = 3;
+    /// An image of red, green, blue in sRGB, a byte each, from the lowest byte of a word on.
+    IMAGE_SRGB8 = 0;
+    /// An image of red, green, blue as three floats, linear.
+    IMAGE_LINEAR = 1;
     /// A light infinitely far away.
     LIGHT_DIRECTIONAL = 0;
     /// A light at a point.
@@ -514,6 +522,17 @@ pub struct DiscTraceParams {
 }
 gpu_layout!(DiscTraceParams, 28, { ranks: 0, tile_size: 16, work: 24 });
 
+/// What rays that hit nothing see.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct BackgroundInfo {
+    /// Linear RGB.
+    pub color: [f32; 3],
+    /// An image instead, or `NONE`.
+    pub environment: u32,
+}
+gpu_layout!(BackgroundInfo, 16, { color: 0, environment: 12 });
+
 /// Push constants of the kernels that scatter and shade the rays of a wave.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -522,10 +541,8 @@ pub struct WaveParams {
     pub forward: [f32; 3],
     /// Rays of the wave; for `shadow_rays` and `shade`, hits on diffuse surfaces.
     pub ray_count: u32,
-    /// Linear RGB.
-    pub background: [f32; 3],
-    /// 1 where camera rays leave the background out.
-    pub transparent: u32,
+    /// What rays that hit nothing see.
+    pub background: BackgroundInfo,
     /// The tile's first pixel in the full image.
     pub tile_origin: [u32; 2],
     /// Columns and rows of the tile.
@@ -544,11 +561,29 @@ pub struct WaveParams {
     pub light_count: u32,
     /// Which sample of each pixel; `NONE` where there is one alone, and lights have no extent.
     pub sample_index: u32,
+    /// 1 where camera rays leave the background out.
+    pub transparent: u32,
 }
-gpu_layout!(WaveParams, 76, {
-    forward: 0, ray_count: 12, background: 16, transparent: 28, tile_origin: 32, tile_size: 40,
-    wave: 48, max_bounces: 52, fresnel: 56, seed: 60, light: 64, light_count: 68, sample_index: 72,
+gpu_layout!(WaveParams, 80, {
+    forward: 0, ray_count: 12, background: 16, tile_origin: 32, tile_size: 40, wave: 48,
+    max_bounces: 52, fresnel: 56, seed: 60, light: 64, light_count: 68, sample_index: 72,
+    transparent: 76,
 });
+
+/// An image whose texels lie in rows, the top row first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ImageInfo {
+    /// Word of its first texel among all texels.
+    pub first: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// One of `IMAGE_*`.
+    pub format: u32,
+}
+gpu_layout!(ImageInfo, 16, { first: 0, width: 4, height: 8, format: 12 });
 
 /// What shading needs of an object.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -556,7 +591,8 @@ gpu_layout!(WaveParams, 76, {
 pub struct ObjectInfo {
     /// Linear RGB, where the points' colours do not count; of a mirror, the share reflected.
     pub albedo: [f32; 3],
-    /// First float of the object's colours, or `NONE`.
+    /// First float of what its points have: three floats of colour each, or, with a texture, their two
+    /// places in it; `NONE` where they have neither.
     pub first_color: u32,
     /// First slot of the object.
     pub first_slot: u32,
@@ -572,21 +608,25 @@ pub struct ObjectInfo {
     pub weight_scale: f32,
     /// 1: normals are blended over the polynomials around a hit.
     pub blends: u32,
-    /// One of `MATERIAL_*`.
-    pub material: u32,
+    /// An image, or `NONE`.
+    pub texture: u32,
+    /// Column over width at x is dot(xyz, x) + w, where points have no places in the texture.
+    pub texture_u: [f32; 4],
+    /// Row over height.
+    pub texture_v: [f32; 4],
     /// Refractive index of glass, by channel.
     pub ior: [f32; 3],
-    /// Of glass: the highest counts where media overlap.
-    pub priority: i32,
+    /// One of `MATERIAL_*`.
+    pub material: u32,
     /// Of glass: σ, per unit of length.
     pub absorption: [f32; 3],
-    /// Unused.
-    pub pad: u32,
+    /// Of glass: the highest counts where media overlap.
+    pub priority: i32,
 }
-gpu_layout!(ObjectInfo, 80, {
+gpu_layout!(ObjectInfo, 112, {
     albedo: 0, first_color: 12, first_slot: 16, polynomial: 20, max_iterations: 24, tolerance: 28,
-    slot_count: 32, weight_scale: 36, blends: 40, material: 44, ior: 48, priority: 60,
-    absorption: 64, pad: 76,
+    slot_count: 32, weight_scale: 36, blends: 40, texture: 44, texture_u: 48, texture_v: 64, ior: 80,
+    material: 92, absorption: 96, priority: 108,
 });
 
 /// One light.
@@ -716,6 +756,8 @@ pub const STRUCTS: &[StructLayout] = &[
     DiscParams::LAYOUT,
     DiscTraceParams::LAYOUT,
     WaveParams::LAYOUT,
+    BackgroundInfo::LAYOUT,
+    ImageInfo::LAYOUT,
     ObjectInfo::LAYOUT,
     Light::LAYOUT,
     Hit::LAYOUT,

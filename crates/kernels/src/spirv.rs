@@ -54,12 +54,12 @@ modules! {
     grid_ranges,
     /// One pass of the traversal.
     grid_trace,
-    /// The same, reading polynomials through a uniform texel buffer.
-    grid_trace_texels,
     /// The same for rays that start on surfaces.
     grid_trace_leaving,
-    /// Both.
+    /// For those, reading polynomials through a uniform texel buffer.
     grid_trace_leaving_texels,
+    /// From the camera, reading polynomials through a uniform texel buffer.
+    grid_trace_texels,
     /// The rays that hit a diffuse surface, one after another.
     list_lit,
     /// The points of each cell with their positions.

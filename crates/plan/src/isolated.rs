@@ -5,7 +5,7 @@
 //! mean of all points' by more than so many standard deviations, and at least twice that mean: on even
 //! points deviations are so small that corners would go.
 
-use points::{Cloud, CloudError, NeighborSearch, ObjectPoints, PointSet};
+use points::{Attribute, Cloud, CloudError, NeighborSearch, ObjectPoints, PointSet, Values};
 
 /// The set without its isolated points, and how many those are; `None` where there are none.
 ///
@@ -66,6 +66,17 @@ fn without_far(set: &PointSet, distances: &[f64], limit: f64) -> Option<PointSet
         file_index: keep(&set.file_index, near()),
         colors: set.colors.as_ref().map(|colors| keep(colors, near())),
         color_encoding: set.color_encoding,
+        attributes: set
+            .attributes
+            .iter()
+            .map(|attribute| Attribute {
+                name: attribute.name.clone(),
+                values: match &attribute.values {
+                    Values::F32(values) => Values::F32(keep(values, near())),
+                    Values::F64(values) => Values::F64(keep(values, near())),
+                },
+            })
+            .collect(),
         format: set.format.clone(),
         non_finite: set.non_finite,
         ..PointSet::default()
@@ -90,7 +101,9 @@ mod tests {
         positions.splice(100..100, strays.iter().copied());
         let file_index = (0..positions.len() as u32).collect();
         let colors = Some(positions.iter().map(|p| [p[2] as f32, 0.0, 0.0]).collect());
-        PointSet { positions, file_index, colors, ..PointSet::default() }
+        let heights = positions.iter().map(|p| p[2]).collect();
+        let height = Attribute { name: "height".to_owned(), values: Values::F64(heights) };
+        PointSet { positions, file_index, colors, attributes: vec![height], ..PointSet::default() }
     }
 
     #[test]
@@ -99,6 +112,7 @@ mod tests {
         let (kept, dropped) = without_isolated(&set, 16, 4.0).expect("bearable").expect("strays");
         assert_eq!((kept.len(), dropped), (400, 2));
         assert_eq!(kept.file_index[99..102], [99, 102, 103]);
+        assert!(kept.attribute("height").expect("heights").iter().all(|height| height == 0.0));
         assert!(kept.colors.expect("colours").iter().all(|color| color[0] == 0.0));
     }
 

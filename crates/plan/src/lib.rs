@@ -6,26 +6,31 @@
 #![forbid(unsafe_code)]
 
 mod camera;
+mod colors;
 mod diagnostic;
 mod discs;
 mod filter;
+mod images;
 mod isolated;
 mod picture;
 
 pub use camera::View;
 pub use diagnostic::Diagnostic;
 pub use discs::{MAX_DISC_PAIRS, screen_tiles};
+pub use images::{Cleaned, SceneImages};
 pub use picture::{Picture, Rays};
 
+use images::{ImageList, Use};
 use kernels::layout::{
-    self, CameraParams, FIT_FULL, FIT_INCOMPLETE, FitParams, LIGHT_DIRECTIONAL, LIGHT_POINT,
-    MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR, NONE, ObjectInfo, WaveParams,
+    self, BackgroundInfo, CameraParams, FIT_FULL, FIT_INCOMPLETE, FitParams, ImageInfo,
+    LIGHT_DIRECTIONAL, LIGHT_POINT, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR, NONE,
+    ObjectInfo, WaveParams,
 };
 use points::{Cloud, CloudError, ObjectPoints, PointSet};
 pub use scene::Primary;
 use scene::{
     Albedo, FeatureSize, Fresnel, Light, Material, MaterialKind, Normals, Object, Polynomial,
-    Refine, Scene, Up,
+    Refine, Scene, TextureAxis, Up,
 };
 use std::sync::Arc;
 
@@ -78,8 +83,17 @@ pub struct Plan {
     pub wave: WaveParams,
     /// What shading needs of each object.
     pub objects: Vec<ObjectInfo>,
-    /// Three floats a point of each object that has colours, by slot.
+    /// Three floats a point of each object that has colours, two where they are places in a texture,
+    /// by slot.
     pub colors: Vec<f32>,
+    /// Where the images of the scene lie among the texels.
+    pub images: Vec<ImageInfo>,
+    /// The linear value of each byte of sRGB; then the texels of all images.
+    pub texels: Vec<u32>,
+    /// Files of the images as the scene names them, for messages.
+    pub image_files: Vec<String>,
+    /// Images with pixels that no picture can show.
+    pub cleaned: Vec<Cleaned>,
     /// All lights.
     pub lights: Vec<layout::Light>,
     /// The full image: columns and rows.
@@ -113,6 +127,48 @@ pub enum PlanError {
         /// Its point file.
         file: String,
     },
+    /// A material asks for an attribute that the file lacks.
+    #[error(
+        "object '{name}': material.albedo is \"attribute:{attribute}\" but {file} has no such attribute; it \
+         has {known}"
+    )]
+    NoAttribute {
+        /// The object.
+        name: String,
+        /// What was asked for.
+        attribute: String,
+        /// Its point file.
+        file: String,
+        /// Names that would do.
+        known: String,
+    },
+    /// An attribute without one finite value.
+    #[error(
+        "object '{name}': material.albedo is \"attribute:{attribute}\" but none of its values in {file} is \
+         finite; take another attribute or give value_range"
+    )]
+    NoValues {
+        /// The object.
+        name: String,
+        /// What was asked for.
+        attribute: String,
+        /// Its point file.
+        file: String,
+    },
+    /// A texture by u and v for points that have none.
+    #[error(
+        "object '{name}': material.texture_axis is \"uv\" but {file} has no attributes u and v (nor s and t, \
+         texture_u and texture_v); project the texture along \"x\", \"y\" or \"z\""
+    )]
+    NoPlaces {
+        /// The object.
+        name: String,
+        /// Its point file.
+        file: String,
+    },
+    /// More texels than 32 bits can count.
+    #[error("the images of the scene, with {0}, are over 4294967295 numbers; make them smaller")]
+    TooManyTexels(String),
     /// A crop that is not inside the picture.
     #[error(
         "--crop {x},{y},{width},{height} does not lie inside the picture of {image_width}x{image_height} \
@@ -134,15 +190,19 @@ pub enum PlanError {
 }
 
 impl Plan {
-    /// Plans a render of `scene`, whose objects have the point sets `sets`, in order. `crop` is what
-    /// of the picture to render, all of it when `None`; `up` turns the view where the scene has no
-    /// camera.
+    /// Plans a render of `scene`, whose objects have the point sets `sets`, in order, and which names
+    /// `images`. `crop` is what of the picture to render, all of it when `None`; `up` turns the view
+    /// where the scene has no camera.
+    ///
+    /// # Panics
+    /// Where the scene names an image that is not given.
     ///
     /// # Errors
-    /// Points that f32 cannot bear, missing colours, a crop outside of the picture.
+    /// Points that f32 cannot bear, missing colours or attributes, a crop outside of the picture.
     pub fn new(
         scene: &Scene,
         sets: &[Arc<PointSet>],
+        images: &SceneImages,
         crop: Option<Window>,
         up: Up,
     ) -> Result<Self, PlanError> {
@@ -168,7 +228,14 @@ impl Plan {
             .zip(0..)
             .map(|(object, index)| fit_params(object, index, &cloud))
             .collect();
-        let (objects, colors) = object_infos(scene, &sets, &cloud)?;
+        let mut list = ImageList::new();
+        let (objects, colors) = object_infos(scene, &sets, &cloud, images, &mut list)?;
+        let environment = match &scene.background.environment {
+            Some(file) => {
+                add_image(&mut list, images.environment.as_ref(), file, Use::Environment)?
+            }
+            None => NONE,
+        };
         let camera = scene
             .camera
             .unwrap_or_else(|| camera::frame(world.iter().flatten(), cloud.bounds, image_size, up));
@@ -186,7 +253,10 @@ impl Plan {
             wave: WaveParams {
                 forward: view.params.forward,
                 ray_count: 0,
-                background: scene.background.color.map(|c| c as f32),
+                background: BackgroundInfo {
+                    color: scene.background.color.map(|c| c as f32),
+                    environment,
+                },
                 transparent: u32::from(scene.image.transparent),
                 tile_origin: [0, 0],
                 tile_size: [0, 0],
@@ -200,6 +270,10 @@ impl Plan {
             },
             objects,
             colors,
+            images: list.infos,
+            texels: list.texels,
+            image_files: list.files,
+            cleaned: list.cleaned,
             lights,
             image_size,
             window,
@@ -372,22 +446,29 @@ fn object_infos(
     scene: &Scene,
     sets: &[Arc<PointSet>],
     cloud: &Cloud,
+    images: &SceneImages,
+    list: &mut ImageList,
 ) -> Result<(Vec<ObjectInfo>, Vec<f32>), PlanError> {
     let mut colors: Vec<f32> = Vec::new();
     let mut infos = Vec::new();
     for (index, (object, set)) in scene.objects.iter().zip(sets).enumerate() {
-        let own = match (object.material.albedo, &set.colors) {
-            (Albedo::Color(_), _) | (Albedo::Default, None) => None,
-            (_, Some(colors)) => Some(colors),
-            (Albedo::Points, None) => {
-                let file = object.points.display().to_string();
-                return Err(PlanError::NoColors { name: object.name.clone(), file });
-            }
-        };
+        let values = point_values(object, set)?;
+        let (mut texture, mut rows) = (NONE, [[0.0; 4]; 2]);
+        if let (MaterialKind::Diffuse, Albedo::Texture { file, axis }) =
+            (object.material.kind, &object.material.albedo)
+        {
+            let image = images.textures.get(index).and_then(Option::as_ref);
+            texture = add_image(list, image, file, Use::Texture)?;
+            let axis = axis.unwrap_or(TextureAxis::Y);
+            rows = colors::projection(axis, set, &object.transform, cloud.origin);
+        }
         let optics = Optics::of(&object.material);
         infos.push(ObjectInfo {
             albedo: optics.albedo,
-            first_color: if own.is_some() { colors.len() as u32 } else { NONE },
+            first_color: match values {
+                PointValues::None => NONE,
+                _ => colors.len() as u32,
+            },
             first_slot: cloud.objects[index].first_slot,
             polynomial: kind_of(object.surface.polynomial),
             max_iterations: match object.surface.refine {
@@ -405,10 +486,18 @@ fn object_infos(
             ior: optics.ior,
             priority: optics.priority,
             absorption: optics.absorption,
-            pad: 0,
+            texture,
+            texture_u: rows[0],
+            texture_v: rows[1],
         });
-        if let Some(own) = own {
-            colors.extend(cloud.by_slot(index, own).iter().flatten());
+        match values {
+            PointValues::None => {}
+            PointValues::Colors(values) => {
+                colors.extend(cloud.by_slot(index, &values).iter().flatten());
+            }
+            PointValues::Places(values) => {
+                colors.extend(cloud.by_slot(index, &values).iter().flatten());
+            }
         }
         if colors.len() > 3_000_000_000 {
             return Err(PlanError::TooManyColors(colors.len() / 3));
@@ -431,7 +520,7 @@ impl Optics {
         let f32s = |v: [f64; 3]| v.map(|x| x as f32);
         let albedo = match material.albedo {
             Albedo::Color(color) => f32s(color),
-            Albedo::Default | Albedo::Points => DEFAULT_ALBEDO,
+            _ => DEFAULT_ALBEDO,
         };
         let diffuse = Self {
             albedo,
@@ -454,6 +543,51 @@ impl Optics {
             },
         }
     }
+}
+
+/// What the points of an object have that its albedo takes.
+enum PointValues {
+    None,
+    Colors(Vec<[f32; 3]>),
+    /// In the object's texture.
+    Places(Vec<[f32; 2]>),
+}
+
+fn point_values(object: &Object, set: &PointSet) -> Result<PointValues, PlanError> {
+    if object.material.kind != MaterialKind::Diffuse {
+        return Ok(PointValues::None);
+    }
+    let (name, file) = (&object.name, || object.points.display().to_string());
+    Ok(match (&object.material.albedo, &set.colors) {
+        (Albedo::Color(_), _) | (Albedo::Default, None) => PointValues::None,
+        (Albedo::Default | Albedo::Points, Some(own)) => {
+            PointValues::Colors(colors::own_colors(own))
+        }
+        (Albedo::Points, None) => {
+            return Err(PlanError::NoColors { name: name.clone(), file: file() });
+        }
+        (Albedo::Attribute { name, color_map, range }, _) => {
+            PointValues::Colors(colors::attribute_colors(object, set, (name, *color_map, *range))?)
+        }
+        (Albedo::Texture { axis, .. }, _) => match (axis, colors::places(set)) {
+            (None | Some(TextureAxis::Uv), Some(places)) => PointValues::Places(places),
+            (Some(TextureAxis::Uv), None) => {
+                return Err(PlanError::NoPlaces { name: name.clone(), file: file() });
+            }
+            _ => PointValues::None,
+        },
+    })
+}
+
+fn add_image(
+    list: &mut ImageList,
+    image: Option<&Arc<film::Image>>,
+    file: &scene::ImageFile,
+    used: Use,
+) -> Result<u32, PlanError> {
+    let Some(image) = image else { unreachable!("the image '{}' is not given", file.as_written) };
+    list.add(image, &file.as_written, used)
+        .ok_or_else(|| PlanError::TooManyTexels(file.as_written.clone()))
 }
 
 fn local_light(light: &Light, origin: [f64; 3]) -> layout::Light {

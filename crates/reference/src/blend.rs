@@ -8,8 +8,8 @@ use crate::real::{Real, V3};
 const OTHER_SHEET: f64 = 0.1;
 const MOST_BLENDED: usize = 4096;
 
-/// The unit normal of p at x, turned to the side of `towards`, times its weight.
-fn weighted_normal<R: Real>(p: &Polynomial<R>, x: V3<R>, towards: V3<R>) -> V3<R> {
+/// The weight of p at x, not under 0, and its unit normal there.
+pub(crate) fn weight_at<R: Real>(p: &Polynomial<R>, x: V3<R>) -> (R, V3<R>) {
     let (zero, one) = (R::of(0.0), R::of(1.0));
     let b = p.trust;
     let y = x - p.center;
@@ -21,7 +21,13 @@ fn weighted_normal<R: Real>(p: &Polynomial<R>, x: V3<R>, towards: V3<R>) -> V3<R
     let apart = height / (steepness * (R::of(OTHER_SHEET) * b));
     let sheet = one - apart * apart;
     let weight = if inner > zero && sheet > zero { (inner * inner) * sheet } else { zero };
-    let normal = gradient.over(steepness);
+    (weight, gradient.over(steepness))
+}
+
+/// The unit normal of p at x, turned to the side of `towards`, times its weight.
+fn weighted_normal<R: Real>(p: &Polynomial<R>, x: V3<R>, towards: V3<R>) -> V3<R> {
+    let zero = R::of(0.0);
+    let (weight, normal) = weight_at(p, x);
     normal.times(if normal.dot(towards) < zero { -weight } else { weight })
 }
 

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 pub mod accumulate;
+pub mod albedo;
 mod batch;
 pub mod blend;
 pub mod camera_rays;
@@ -12,12 +13,14 @@ pub mod disc;
 pub mod disc_bin;
 pub mod disc_trace;
 pub mod eigen;
+pub mod environment;
 pub mod fit;
 pub mod fit_polynomials;
 pub mod gap;
 pub mod grid;
 pub mod grid_build;
 pub mod grid_trace;
+pub mod image;
 pub mod least_squares;
 pub mod light;
 pub mod media;
@@ -196,6 +199,14 @@ impl<R: Real> Reference<R> {
     ) -> (Vec<FilmPixel>, Rays) {
         let grid = Grid::<R>::from(&self.grid);
         let (camera, params) = (plan.camera_of(window, sample), plan.wave_of(window, sample));
+        let albedos = albedo::Albedos {
+            grid: &grid,
+            lists: &self.lists,
+            polynomials: &self.polynomials,
+            objects: &plan.objects,
+            colors: &plan.colors,
+            images: image::Images { infos: &plan.images, texels: &plan.texels },
+        };
         let traced: Vec<(FilmPixel, Rays)> = (0..window.size[0] * window.size[1])
             .into_par_iter()
             .map(|i| {
@@ -206,6 +217,7 @@ impl<R: Real> Reference<R> {
                     plan,
                     grid: &grid,
                     params: &params,
+                    albedos: &albedos,
                     pixel: in_picture,
                     film: FilmPixel::zeroed(),
                     rays: Rays { camera: 1, ..Rays::default() },

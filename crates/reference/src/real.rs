@@ -38,6 +38,8 @@ pub trait Real:
     fn sin_octant(self) -> Self;
     /// Cosine for |x| ≤ π/4.
     fn cos_octant(self) -> Self;
+    /// The angle of (x, y) from the x axis, −π to π, where self is y; 0 for (0, 0).
+    fn arc_tangent(self, x: Self) -> Self;
 
     /// As GLSL defines it.
     #[must_use]
@@ -109,6 +111,24 @@ impl Real for f32 {
         p = p * z + 4.166_664_568_298_827e-2;
         (p * z * z - 0.5 * z) + 1.0
     }
+    fn arc_tangent(self, x: Self) -> Self {
+        let (across, along) = (Real::abs(self), Real::abs(x));
+        let (lesser, larger) = (Real::min(across, along), Real::max(across, along));
+        let steep = lesser > 0.414_213_562 * larger;
+        let over = if steep { lesser - larger } else { lesser };
+        let under = if steep { lesser + larger } else { larger };
+        let t = over / (if under > 0.0 { under } else { 1.0 });
+        let z = t * t;
+        let mut p = 8.053_744_495_38e-2;
+        p = p * z - 1.387_768_560_32e-1;
+        p = p * z + 1.997_771_064_78e-1;
+        p = p * z - 3.333_294_915_39e-1;
+        let quarter = if steep { std::f32::consts::FRAC_PI_4 } else { 0.0 };
+        let angle = (p * z * t + t) + quarter;
+        let angle = if across > along { std::f32::consts::FRAC_PI_2 - angle } else { angle };
+        let angle = if x < 0.0 { std::f32::consts::PI - angle } else { angle };
+        if self < 0.0 { -angle } else { angle }
+    }
 }
 
 impl Real for f64 {
@@ -141,6 +161,9 @@ impl Real for f64 {
     }
     fn cos_octant(self) -> Self {
         self.cos()
+    }
+    fn arc_tangent(self, x: Self) -> Self {
+        self.atan2(x)
     }
 }
 
@@ -272,5 +295,27 @@ mod tests {
             assert!((ours_cos - cos).abs() <= ulp(cos), "cos {x}: {ours_cos}");
         }
         assert_eq!((Real::sin_octant(0.0f32), Real::cos_octant(0.0f32)), (0.0, 1.0));
+    }
+
+    /// Four units in the last place, against f64's, all around and close to the axes.
+    #[test]
+    fn arc_tangent_is_within_four_ulp() {
+        let check = |y: f32, x: f32| {
+            let (ours, exact) = (f64::from(y.arc_tangent(x)), f64::from(y).atan2(f64::from(x)));
+            let bound = 4.0 * f64::from(f32::EPSILON) * exact.abs();
+            assert!((ours - exact).abs() <= bound, "({x}, {y}): {ours}, not {exact}");
+        };
+        for i in 0..200_000 {
+            let angle = f64::from(i) * (std::f64::consts::TAU / 200_000.0) + 1e-6;
+            check(angle.sin() as f32, angle.cos() as f32);
+        }
+        for tiny in [1e-30, 1e-12, 1e-7, 1e-3] {
+            for (y, x) in [(tiny, 1.0), (tiny, -1.0), (1.0, tiny), (1.0, -tiny)] {
+                check(y, x);
+                check(-y, x);
+            }
+        }
+        assert_eq!(0.0f32.arc_tangent(0.0), 0.0);
+        assert_eq!(0.0f32.arc_tangent(-1.0), std::f32::consts::PI);
     }
 }

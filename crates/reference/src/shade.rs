@@ -6,7 +6,7 @@ use crate::light::sample_light;
 use crate::real::{Real, V3};
 use crate::sampler::sample_2d;
 use crate::surface_hit::Hit;
-use kernels::layout::{Light, NONE, ObjectInfo, SAMPLE_LIGHT, WaveParams};
+use kernels::layout::{Light, NONE, SAMPLE_LIGHT, WaveParams};
 
 /// The ray from a hit towards a light and what it would bring; `None` where the light lies behind the
 /// surface. `u` says towards which place on the light.
@@ -35,15 +35,6 @@ pub fn place_on_light<R: Real>(params: &WaveParams, pixel: [u32; 2], i: u32) -> 
         return [R::of(0.5); 2];
     }
     sample_2d(pixel, params.sample_index, params.seed, SAMPLE_LIGHT + i)
-}
-
-/// The colour of a point's surface.
-pub fn point_color<R: Real>(object: &ObjectInfo, slot: u32, colors: &[f32]) -> V3<R> {
-    if object.first_color == NONE {
-        return V3::of_f32(object.albedo);
-    }
-    let at = (object.first_color + 3 * (slot - object.first_slot)) as usize;
-    V3([0, 1, 2].map(|channel| R::of_f32(colors[at + channel])))
 }
 
 /// The radiance that a diffuse surface scatters under this irradiance.

@@ -4,16 +4,18 @@
 //! after the other. No ray of a pixel depends on another, so both give the same bits.
 
 use crate::Reference;
+use crate::albedo::Albedos;
 use crate::camera_rays::Ray;
 use crate::disc_bin::DiscLists;
 use crate::disc_trace::disc_trace;
+use crate::environment::background_at;
 use crate::grid::Grid;
 use crate::grid_trace::grid_trace;
 use crate::media::{Media, ior_of, transmittance};
 use crate::optics::{reflected, refraction};
 use crate::real::{NO_HIT, Real, V3};
 use crate::sampler::sample_1d;
-use crate::shade::{lambert, place_on_light, point_color, shadow_ray};
+use crate::shade::{lambert, place_on_light, shadow_ray};
 use crate::surface_hit::Hit;
 use kernels::layout::{
     CHANNELS_ALL, FilmPixel, MATERIAL_DIFFUSE, MATERIAL_GLASS, MOST_CROSSINGS, NONE,
@@ -37,6 +39,7 @@ pub(crate) struct PixelTrace<'a, R> {
     pub plan: &'a Plan,
     pub grid: &'a Grid<R>,
     pub params: &'a WaveParams,
+    pub albedos: &'a Albedos<'a, R>,
     /// In the full image.
     pub pixel: [u32; 2],
     pub film: FilmPixel,
@@ -121,7 +124,7 @@ impl<R: Real> PixelTrace<'_, R> {
         }
         let Some((hit, object)) = hit else {
             if !(from_camera && self.params.transparent != 0) {
-                self.write(path.channels, path.throughput * self.background());
+                self.write(path.channels, path.throughput * self.background(ray.direction));
             }
             return;
         };
@@ -133,8 +136,8 @@ impl<R: Real> PixelTrace<'_, R> {
         }
     }
 
-    fn background(&self) -> V3<R> {
-        V3::of_f32(self.params.background)
+    fn background(&self, direction: V3<R>) -> V3<R> {
+        background_at(self.albedos.images, &self.params.background, direction)
     }
 
     fn shade(&mut self, hit: &Hit<R>, object: u32, slot: u32) -> V3<R> {
@@ -151,8 +154,7 @@ impl<R: Real> PixelTrace<'_, R> {
                 irradiance = irradiance + arriving;
             }
         }
-        let object = &self.plan.objects[object as usize];
-        lambert(point_color(object, slot, &self.plan.colors), irradiance)
+        lambert(self.albedos.albedo_at(object, slot, hit.position), irradiance)
     }
 
     /// The number that decides between reflection and refraction; `None`: rays are refracted.
@@ -204,7 +206,7 @@ impl<R: Real> PixelTrace<'_, R> {
                 }
             };
             if !goes_on {
-                self.write(channels, throughput * self.background());
+                self.write(channels, throughput * self.background(direction));
                 continue;
             }
             if reflects {

@@ -8,8 +8,8 @@
 use crate::RenderError;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
-    CameraRays, Classify, ClassifyIo, DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Records,
-    Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start,
+    AlbedoIo, CameraRays, Classify, ClassifyIo, DiscTrace, DiscTraceIo, GridTrace, GridTraceIo,
+    Records, Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start,
     SurfaceHit, SurfaceHitIo,
 };
 use crate::samples::Samples;
@@ -64,6 +64,8 @@ pub struct Renderer {
     surfaces: Surfaces,
     objects: Buffer,
     colors: Buffer,
+    images: Buffer,
+    texels: Buffer,
     lights: Buffer,
     filter: Buffer,
     film: Buffer,
@@ -157,6 +159,8 @@ impl Renderer {
             surfaces,
             objects: Buffer::from_slice(device, "objects", &plan.objects)?,
             colors: Buffer::from_slice(device, "point colors", &plan.colors)?,
+            images: Buffer::from_slice(device, "images", &plan.images)?,
+            texels: texel_buffer(device, plan)?,
             lights: Buffer::from_slice(device, "lights", &plan.lights)?,
             filter: Buffer::from_slice(device, "filter", &plan.filter)?,
             samples: Samples::new(device, plan, pixels)?,
@@ -403,8 +407,10 @@ impl Renderer {
         let io = ClassifyIo {
             state: &self.state.current,
             polynomials: &self.surfaces.polynomials,
-            hits: &self.hits,
             objects: &self.objects,
+            images: &self.images,
+            texels: &self.texels,
+            hits: &self.hits,
             film: &self.film,
             paths: self.wave.paths(),
             lit: self.wave.lit(),
@@ -453,9 +459,14 @@ impl Renderer {
         }
         let io = ShadeIo {
             shadows: &self.shadows.current,
-            polynomials: &self.surfaces.polynomials,
-            objects: &self.objects,
-            colors: &self.colors,
+            albedos: AlbedoIo {
+                surfaces: &self.surfaces,
+                objects: &self.objects,
+                colors: &self.colors,
+                images: &self.images,
+                texels: &self.texels,
+            },
+            hits: &self.hits,
             film: &self.film,
             paths: self.wave.paths(),
             lit_rays: self.wave.lit_rays(),
@@ -482,6 +493,8 @@ impl Renderer {
             hits: &self.hits,
             objects: &self.objects,
             film: &self.film,
+            images: &self.images,
+            texels: &self.texels,
             paths: self.wave.paths(),
             next_paths: self.wave.next_paths(),
             next: self.wave.next(),
@@ -493,4 +506,15 @@ impl Renderer {
         self.wave.swap();
         Ok(WaveBuffers::read_total(self.wave.next(), params.ray_count)?)
     }
+}
+
+/// The texels of all images, if the device takes so many.
+fn texel_buffer(device: &Arc<Device>, plan: &Plan) -> Result<Buffer, RenderError> {
+    let needed = size_of_val(plan.texels.as_slice()) as u64;
+    let limit = device.limits().max_storage_buffer_range;
+    if needed > limit {
+        let images = plan.image_files.join(", ");
+        return Err(RenderError::Images { images, needed, limit });
+    }
+    Ok(Buffer::from_slice(device, "texels", &plan.texels)?)
 }

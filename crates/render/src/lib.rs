@@ -24,6 +24,20 @@ pub enum RenderError {
     /// The device refused or failed.
     #[error(transparent)]
     Gpu(#[from] gpu::GpuError),
+    /// More texels than one buffer of the device may hold.
+    #[error(
+        "the images ({images}) need {needed} bytes but the device takes {limit}, that is {} pixels of 8 \
+         bits or {} of floats in all; make them smaller, or render with --device reference",
+        limit / 4, limit / 12
+    )]
+    Images {
+        /// Their files.
+        images: String,
+        /// Bytes of all.
+        needed: u64,
+        /// Bytes allowed.
+        limit: u64,
+    },
     /// The watcher asked for an end.
     #[error("interrupted")]
     Interrupted,

@@ -218,6 +218,17 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
             within(found as f64, 1.0, *max as f64)
                 .map_err(|advice| format!("found {}, expected {range}; {advice}", item.shown))
         }),
+        (Kind::Range(range), _) => {
+            elements(2, &|item| element(item, range))?;
+            let ends: Vec<Option<f64>> = node.items().iter().map(as_number).collect();
+            if ends[0] < ends[1] { Ok(()) } else { Err(wrong("raise the second".into())) }
+        }
+        (Kind::Prefixed(before, _), Value::Text(found)) => {
+            match found.strip_prefix(before).map(str::trim) {
+                Some(name) if !name.is_empty() => Ok(()),
+                _ => Err(by_example()),
+            }
+        }
         (Kind::Choice(names), Value::Text(found)) => {
             if names.contains(&found.as_str()) {
                 return Ok(());
@@ -243,9 +254,14 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
                         | (Kind::Vector(_), Value::List(_))
                 )
             };
+            let prefixed = |kind: &&Kind| match (kind, value) {
+                (Kind::Prefixed(before, _), Value::Text(found)) => found.starts_with(before),
+                _ => false,
+            };
             kinds
                 .iter()
-                .find(same_type)
+                .find(prefixed)
+                .or_else(|| kinds.iter().find(same_type))
                 .map_or_else(|| Err(by_example()), |kind| scalar(node, kind, key))
         }
         _ => Err(by_example()),
@@ -365,7 +381,7 @@ pub(crate) fn direction_has_a_length(light: &Reader<'_>) -> Result<(), Fault> {
 }
 
 /// An Abbe number goes with one index, not with one a channel.
-pub(crate) fn dispersion_is_stated_once(material: &Reader<'_>) -> Result<(), Fault> {
+fn dispersion_is_stated_once(material: &Reader<'_>) -> Result<(), Fault> {
     let several = material.written("ior").is_some_and(|ior| matches!(ior.value, Value::List(_)));
     if material.written("abbe").is_some() && several {
         let message = "found beside an ior of three numbers, expected one number there; remove \
@@ -373,6 +389,41 @@ pub(crate) fn dispersion_is_stated_once(material: &Reader<'_>) -> Result<(), Fau
         return Err(("abbe", message.into()));
     }
     Ok(())
+}
+
+/// The background is a colour or an image. The colour that a point file rendered directly gets gives way.
+pub(crate) fn background_is_one(background: &Reader<'_>) -> Result<(), Fault> {
+    let color = background.written("color").filter(|node| node.origin != Origin::Given);
+    match (color, background.written("environment")) {
+        (Some(_), Some(_)) => Err((
+            "environment",
+            "found both color and environment, expected one of them; remove one".into(),
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// A material has an albedo or a texture, and what belongs to one of them only with that.
+pub(crate) fn material_has_one_color(material: &Reader<'_>) -> Result<(), Fault> {
+    let has = |name: &str| material.written(name).is_some();
+    if has("albedo") && has("texture") && material.text("kind") == "diffuse" {
+        let message = "found both albedo and texture, expected one of them; remove one";
+        return Err(("texture", message.into()));
+    }
+    if has("texture_axis") && !has("texture") {
+        let message = "belongs to a texture, but there is none; add texture, or remove it";
+        return Err(("texture_axis", message.into()));
+    }
+    let albedo = material.written("albedo").map(|node| &node.value);
+    let of_attribute = matches!(albedo, Some(Value::Text(text)) if text != "points");
+    for name in ["color_map", "value_range"] {
+        if has(name) && !of_attribute {
+            let message = "belongs to the albedo of an attribute, but there is none; write albedo = \
+                           \"attribute:NAME\", or remove it";
+            return Err((name, message.into()));
+        }
+    }
+    dispersion_is_stated_once(material)
 }
 
 fn long_enough(name: &'static str, v: [f64; 3]) -> Result<(), Fault> {

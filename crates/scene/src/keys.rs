@@ -3,7 +3,9 @@
 //! The checker, the defaults of the public types, the JSON Schema and the tables of docs/scene.md
 //! all come from [`SCENE`]. What is known here but not built is listed in `not_built.rs`.
 
-use crate::check::{camera_has_a_view, direction_has_a_length, dispersion_is_stated_once};
+use crate::check::{
+    background_is_one, camera_has_a_view, direction_has_a_length, material_has_one_color,
+};
 use crate::read::Reader;
 
 /// A key's name and what is wrong with its value.
@@ -68,7 +70,11 @@ pub(crate) enum Kind {
     Size {
         max: i64,
     },
+    /// Two numbers, the first under the second.
+    Range(Numbers),
     Choice(&'static [&'static str]),
+    /// This word and what it goes before, which is what the second says.
+    Prefixed(&'static str, &'static str),
     Text(&'static str),
     /// One of several, told apart by TOML type.
     Either(&'static [Kind]),
@@ -295,14 +301,15 @@ pub(crate) static RENDER: Table = Table {
 pub(crate) static BACKGROUND: Table = Table {
     header: "[background]",
     doc: "What rays that hit nothing see. It lights nothing else.",
-    whole: None,
+    whole: Some(background_is_one),
     keys: &[
         key("color", RADIANCE, Value("[0.0, 0.0, 0.0]"), "One radiance in every direction."),
         key(
             "environment",
             Kind::Text("the path of an image"),
             Words("none", "\"sky.exr\""),
-            "An equirectangular image instead of `color`, +y up.",
+            "An equirectangular image (EXR or HDR; PNG and JPEG are decoded from sRGB) instead of \
+             `color`: +y is its top row, -z its middle, +x right of that.",
         ),
     ],
 };
@@ -484,7 +491,7 @@ pub(crate) static SURFACE: Table = Table {
 pub(crate) static MATERIAL: Table = Table {
     header: "[objects.material]",
     doc: "How the surface scatters light. Keys of another kind than the material's have no effect.",
-    whole: Some(dispersion_is_stated_once),
+    whole: Some(material_has_one_color),
     keys: &[
         key(
             "kind",
@@ -494,19 +501,45 @@ pub(crate) static MATERIAL: Table = Table {
         ),
         key(
             "albedo",
-            Kind::Either(&[Kind::Choice(&["points"]), SHARE]),
+            Kind::Either(&[
+                Kind::Choice(&["points"]),
+                Kind::Prefixed("attribute:", "the name of an attribute of the points"),
+                SHARE,
+            ]),
             Words("the points' own colours where they have them, else 0.8", "[0.8, 0.8, 0.8]"),
             "Diffuse: the share of light scattered back; `\"points\"` takes the points' own \
-             colours.",
+             colours, `\"attribute:NAME\"` shows an attribute (or x, y, z of the file) through \
+             `color_map`.",
+        ),
+        key(
+            "color_map",
+            Kind::Choice(&crate::scene::ColorMap::NAMES),
+            Value("\"viridis\""),
+            "Colours of an attribute, from the lower end of `value_range` to the upper one.",
+        ),
+        key(
+            "value_range",
+            Kind::Range(numbers(-1e300, 1e300, "in the attribute's unit")),
+            Words("the attribute's own range", "[0.0, 1.0]"),
+            "Values of an attribute at the two ends of `color_map`; what lies beyond has their colours.",
         ),
         key(
             "texture",
             Kind::Text("the path of an image"),
             Words("none", "\"grass.png\""),
-            "Diffuse, instead of `albedo`: an image projected along `texture_axis` over the \
-             object's bounding box.",
+            "Diffuse, instead of `albedo`: an image (PNG, JPEG, EXR, HDR) over the object; see \
+             `texture_axis`.",
         ),
-        key("texture_axis", Kind::Choice(&["x", "y", "z"]), Value("\"y\""), "See `texture`."),
+        key(
+            "texture_axis",
+            Kind::Choice(&["x", "y", "z", "uv"]),
+            Words("`\"uv\"` where the points have u and v, else `\"y\"`", "\"y\""),
+            "Projects `texture` along an axis over the bounding box of the points, in the file's \
+             coordinates, before the transform. Seen from the positive axis: `\"y\"` has x to the right and z \
+             downwards, `\"z\"` has x to the right and y upwards, `\"x\"` has -z to the right and y \
+             upwards. `\"uv\"` takes the points' attributes u and v (or s and t, texture_u and \
+             texture_v); v counts upwards from the bottom row.",
+        ),
         key("reflectance", SHARE, Value("[1.0, 1.0, 1.0]"), "Mirror: the share reflected."),
         key(
             "ior",
@@ -618,7 +651,9 @@ impl Kind {
                 )
             }
             Kind::Size { max } => format!("width and height, two integers from 1 to {max} pixels"),
+            Kind::Range(n) => format!("two numbers {n}, the second greater"),
             Kind::Choice(names) => choice(names),
+            Kind::Prefixed(before, what) => format!("\"{before}\" and {what}"),
             Kind::Text(what) => format!("{what}, a string"),
             Kind::Either(kinds) => {
                 kinds.iter().map(Kind::expected).collect::<Vec<_>>().join(", or ")

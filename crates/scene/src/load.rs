@@ -5,9 +5,9 @@ use crate::error::{Problem, Source};
 use crate::keys::{self, SCENE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
-    Albedo, Background, Camera, FeatureSize, Filter, Fresnel, ImageSettings, Light, Material,
-    MaterialKind, Normals, Object, Polynomial, Primary, Projection, RayLoop, Refine,
-    RenderSettings, Scene, SceneError, Surface, Transform, Up,
+    Albedo, Background, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile, ImageSettings,
+    Light, Material, MaterialKind, Normals, Object, Polynomial, Primary, Projection, RayLoop,
+    Refine, RenderSettings, Scene, SceneError, Surface, TextureAxis, Transform, Up,
 };
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 const MAX_BYTES: u64 = 16 << 20;
 
 impl Scene {
-    /// Reads and checks a scene file, and that its point files exist. `overrides` are `PATH=VALUE`
+    /// Reads and checks a scene file, and that the files it names exist. `overrides` are `PATH=VALUE`
     /// (`objects.0.surface.trust=0.7`), applied in order before the checks; paths in them too
     /// start from the scene file's folder.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
@@ -30,7 +30,7 @@ impl Scene {
             SceneError::at(path, &bytes, at, &message)
         })?;
         let (document, scene) = parse(text, path, overrides)?;
-        points_exist(&document, &scene, &Source { file: path, text, overrides })?;
+        files_exist(&document, &scene, &Source { file: path, text, overrides })?;
         Ok(scene)
     }
 
@@ -58,7 +58,7 @@ impl Scene {
         {
             object.points = points.to_path_buf();
         }
-        points_exist(&document, &scene, &source)?;
+        files_exist(&document, &scene, &source)?;
         Ok(scene)
     }
 }
@@ -112,37 +112,52 @@ fn checked(document: &mut Node, folder: &Path, source: &Source<'_>) -> Result<Sc
     }
 }
 
-/// Every object's point file is there.
-fn points_exist(document: &Node, scene: &Scene, source: &Source<'_>) -> Result<(), SceneError> {
+/// Every file that the scene names is there: point files and images.
+fn files_exist(document: &Node, scene: &Scene, source: &Source<'_>) -> Result<(), SceneError> {
     let nodes = document.get("objects").map_or(&[][..], Node::items);
-    let problems: Vec<Problem> = (scene.objects.iter().zip(nodes).enumerate())
-        .filter_map(|(index, (object, node))| {
-            let path = object.points.display();
-            let message = match fs::metadata(&object.points) {
-                Ok(meta) if meta.is_dir() => {
-                    format!("found a folder at '{path}', expected a point file; name the file")
-                }
-                Ok(_) => return None,
-                Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                    format!(
-                        "found no file at '{path}'; check the path, which starts from the \
-                             scene file's folder"
-                    )
-                }
-                Err(error) => {
-                    format!("'{path}' cannot be read ({error}); check the file and its permissions")
-                }
-            };
-            let origin = node.get("points").map_or(node.origin, |points| points.origin);
-            // A point file rendered directly is named by the message already.
-            let path = match origin {
-                Origin::Given => String::new(),
-                _ => format!("objects[{index}].points"),
-            };
-            Some(Problem { origin, path, message })
-        })
-        .collect();
+    let mut problems = Vec::new();
+    let mut require = |file: &Path, what: &str, origin: Origin, path: String| {
+        let Some(message) = what_is_missing(file, what) else { return };
+        // A point file rendered directly is named by the message already.
+        let path = if origin == Origin::Given { String::new() } else { path };
+        problems.push(Problem { origin, path, message });
+    };
+    if let Some(image) = &scene.background.environment {
+        let origin = document
+            .get("background")
+            .and_then(|table| table.get("environment"))
+            .map_or(document.origin, |node| node.origin);
+        require(&image.path, "an image", origin, "background.environment".into());
+    }
+    for (index, (object, node)) in scene.objects.iter().zip(nodes).enumerate() {
+        let origin = node.get("points").map_or(node.origin, |points| points.origin);
+        require(&object.points, "a point file", origin, format!("objects[{index}].points"));
+        if let Albedo::Texture { file, .. } = &object.material.albedo {
+            let origin = node
+                .get("material")
+                .and_then(|table| table.get("texture"))
+                .map_or(node.origin, |texture| texture.origin);
+            require(&file.path, "an image", origin, format!("objects[{index}].material.texture"));
+        }
+    }
     if problems.is_empty() { Ok(()) } else { Err(SceneError::problems(problems, source)) }
+}
+
+/// Why a path is no file, if it is none.
+fn what_is_missing(file: &Path, expected: &str) -> Option<String> {
+    let path = file.display();
+    match fs::metadata(file) {
+        Ok(meta) if meta.is_dir() => {
+            Some(format!("found a folder at '{path}', expected {expected}; name the file"))
+        }
+        Ok(_) => None,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Some(format!(
+            "found no file at '{path}'; check the path, which starts from the scene file's folder"
+        )),
+        Err(error) => {
+            Some(format!("'{path}' cannot be read ({error}); check the file and its permissions"))
+        }
+    }
 }
 
 /// As TOML, so that overrides and checks work on it as on any scene.
@@ -169,7 +184,7 @@ fn scene(file: &Reader<'_>, folder: &Path) -> Scene {
             .map(|node| Camera::read(&Reader::new(&keys::CAMERA, Some(node)))),
         image: ImageSettings::read(&file.table("image", &keys::IMAGE)),
         render: RenderSettings::read(&file.table("render", &keys::RENDER)),
-        background: Background::read(&file.table("background", &keys::BACKGROUND)),
+        background: Background::read(&file.table("background", &keys::BACKGROUND), folder),
         lights: file.tables("lights", &keys::LIGHTS).iter().map(Light::read).collect(),
         objects: (file.tables("objects", &keys::OBJECTS).iter())
             .map(|object| Object::read(object, folder))
@@ -235,8 +250,20 @@ impl RenderSettings {
 }
 
 impl Background {
-    fn read(table: &Reader<'_>) -> Self {
-        Self { color: table.vector("color") }
+    fn read(table: &Reader<'_>, folder: &Path) -> Self {
+        Self {
+            color: table.vector("color"),
+            environment: ImageFile::read(table, "environment", folder),
+        }
+    }
+}
+
+impl ImageFile {
+    /// The image that a key names, if it is written.
+    fn read(table: &Reader<'_>, name: &str, folder: &Path) -> Option<Self> {
+        table.written(name)?;
+        let as_written = table.text(name);
+        Some(Self { path: folder.join(&as_written), as_written })
     }
 }
 
@@ -271,7 +298,7 @@ impl Object {
             points_as_written: written,
             transform: Transform::read(&table.table("transform", &keys::TRANSFORM)),
             surface: Surface::read(&table.table("surface", &keys::SURFACE)),
-            material: Material::read(&table.table("material", &keys::MATERIAL)),
+            material: Material::read(&table.table("material", &keys::MATERIAL), folder),
         }
     }
 }
@@ -320,13 +347,7 @@ impl Surface {
 }
 
 impl Material {
-    fn read(table: &Reader<'_>) -> Self {
-        let albedo = match table.written("albedo").map(|node| &node.value) {
-            None => Albedo::Default,
-            Some(Value::Text(_)) => Albedo::Points,
-            Some(value) => to_vector(value)
-                .map_or_else(|| table.unlike("an albedo", "albedo", value), Albedo::Color),
-        };
+    fn read(table: &Reader<'_>, folder: &Path) -> Self {
         let kind = match table.text("kind").as_str() {
             "mirror" => MaterialKind::Mirror { reflectance: table.vector("reflectance") },
             "glass" => MaterialKind::Glass {
@@ -337,7 +358,35 @@ impl Material {
             },
             _ => MaterialKind::Diffuse,
         };
-        Self { kind, albedo }
+        Self { kind, albedo: Albedo::read(table, folder) }
+    }
+}
+
+impl Albedo {
+    fn read(table: &Reader<'_>, folder: &Path) -> Self {
+        if let Some(file) = ImageFile::read(table, "texture", folder) {
+            let axis =
+                table.written("texture_axis").map(|_| match table.text("texture_axis").as_str() {
+                    "x" => TextureAxis::X,
+                    "z" => TextureAxis::Z,
+                    "uv" => TextureAxis::Uv,
+                    _ => TextureAxis::Y,
+                });
+            return Self::Texture { file, axis };
+        }
+        match table.written("albedo").map(|node| &node.value) {
+            None => Self::Default,
+            Some(Value::Text(text)) => match text.strip_prefix("attribute:") {
+                Some(name) => Self::Attribute {
+                    name: name.trim().to_owned(),
+                    color_map: ColorMap::read(&table.text("color_map")),
+                    range: table.written_range("value_range"),
+                },
+                None => Self::Points,
+            },
+            Some(value) => to_vector(value)
+                .map_or_else(|| table.unlike("an albedo", "albedo", value), Self::Color),
+        }
     }
 }
 
@@ -361,6 +410,12 @@ fn ior_of_channels(table: &Reader<'_>) -> [f64; 3] {
     CHANNELS.map(|channel| index + b * (channel - LINE_D))
 }
 
+impl ColorMap {
+    fn read(name: &str) -> Self {
+        Self::ALL.into_iter().find(|map| map.name() == name).unwrap_or(Self::Viridis)
+    }
+}
+
 impl Default for ImageSettings {
     fn default() -> Self {
         Self::read(&Reader::defaults(&keys::IMAGE))
@@ -375,7 +430,7 @@ impl Default for RenderSettings {
 
 impl Default for Background {
     fn default() -> Self {
-        Self::read(&Reader::defaults(&keys::BACKGROUND))
+        Self::read(&Reader::defaults(&keys::BACKGROUND), Path::new(""))
     }
 }
 
@@ -393,6 +448,6 @@ impl Default for Surface {
 
 impl Default for Material {
     fn default() -> Self {
-        Self::read(&Reader::defaults(&keys::MATERIAL))
+        Self::read(&Reader::defaults(&keys::MATERIAL), Path::new(""))
     }
 }

@@ -31,11 +31,8 @@ const fn value(path: &'static str, when: When, instead: &'static str) -> NotBuil
 /// The whole list.
 pub(crate) const NOT_BUILT: &[NotBuilt] = &[
     value("render.loop", When::Is(&["queue"]), "use \"images\" or \"auto\""),
-    key("background.environment"),
     key("objects.filter"),
     key("objects.volume"),
-    key("objects.material.texture"),
-    key("objects.material.texture_axis"),
 ];
 
 /// The entry of a key, if it has one.

@@ -80,6 +80,15 @@ impl<'a> Reader<'a> {
         to_vector(&value).unwrap_or_else(|| self.unlike("a vector", name, &value))
     }
 
+    /// Two numbers, where they are written.
+    pub(crate) fn written_range(&self, name: &str) -> Option<[f64; 2]> {
+        let node = self.written(name)?;
+        match node.items() {
+            [low, high] => to_number(&low.value).zip(to_number(&high.value)).map(Into::into),
+            _ => self.unlike("a range", name, &node.value),
+        }
+    }
+
     /// The value that was written, else the default.
     pub(crate) fn value(&self, name: &str) -> Value {
         if let Some(node) = self.written(name) {

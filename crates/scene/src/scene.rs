@@ -132,10 +132,21 @@ pub enum Primary {
 }
 
 /// What rays that hit nothing see. It lights nothing else.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Background {
     /// Radiance, each 0 to 1e15.
     pub color: [f64; 3],
+    /// An equirectangular image instead.
+    pub environment: Option<ImageFile>,
+}
+
+/// An image that the scene names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ImageFile {
+    /// Resolved against the scene file's folder.
+    pub path: PathBuf,
+    /// As the scene file names it, for headers: it says nothing about the machine.
+    pub as_written: String,
 }
 
 /// A light. Every surface blocks it fully.
@@ -247,8 +258,8 @@ pub enum FeatureSize {
     Constant(f64),
 }
 
-/// How a surface scatters light.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// How a surface scatters light. Diffuse (Lambert) is what is built.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// What becomes of a ray.
     pub kind: MaterialKind,
@@ -278,7 +289,7 @@ pub enum MaterialKind {
 }
 
 /// Where a diffuse surface takes its albedo from.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Albedo {
     /// The points' own colours where they have them, else 0.8.
     Default,
@@ -286,6 +297,75 @@ pub enum Albedo {
     Points,
     /// One colour, each 0 to 1.
     Color([f64; 3]),
+    /// An attribute of the points, or `x`, `y` or `z` where they have none of that name.
+    Attribute {
+        /// Its name; a point set without it is an error of the renderer's.
+        name: String,
+        /// The colours that it is shown in.
+        color_map: ColorMap,
+        /// Values at the two ends of the map, the second greater; the attribute's own where `None`.
+        range: Option<[f64; 2]>,
+    },
+    /// An image.
+    Texture {
+        /// Which.
+        file: ImageFile,
+        /// How it lies; where `None`, by u and v if the points have them, else along y.
+        axis: Option<TextureAxis>,
+    },
+}
+
+/// Colours for values, from low to high.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColorMap {
+    /// Of matplotlib: dark blue, green, yellow.
+    Viridis,
+    /// Of Google: a rainbow of even brightness.
+    Turbo,
+    /// Of matplotlib: black, purple, cream.
+    Magma,
+    /// Of matplotlib: black, red, pale yellow.
+    Inferno,
+    /// Of matplotlib: blue, red, yellow.
+    Plasma,
+    /// Blue, grey, yellow; the same to colour-blind eyes.
+    Cividis,
+    /// Black to white in even steps of sRGB.
+    Gray,
+}
+
+impl ColorMap {
+    /// All, in the order of their names.
+    pub const ALL: [Self; 7] = [
+        Self::Viridis,
+        Self::Turbo,
+        Self::Magma,
+        Self::Inferno,
+        Self::Plasma,
+        Self::Cividis,
+        Self::Gray,
+    ];
+    /// Their names in scene files.
+    pub const NAMES: [&str; 7] =
+        ["viridis", "turbo", "magma", "inferno", "plasma", "cividis", "gray"];
+
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
+/// How a texture lies on an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TextureAxis {
+    /// Projected along x over the bounding box of the points, in the file's coordinates.
+    X,
+    /// Along y.
+    Y,
+    /// Along z.
+    Z,
+    /// By the points' own u and v.
+    Uv,
 }
 
 /// Which axis of a point file points upwards.

@@ -95,6 +95,12 @@ fn kind(of: &Kind, path: &str) -> Map<String, Json> {
             "type": "array", "items": { "type": "integer", "minimum": 1, "maximum": max },
             "minItems": 2, "maxItems": 2,
         })),
+        Kind::Range(range) => as_map(json!({
+            "type": "array", "items": number(range), "minItems": 2, "maxItems": 2,
+        })),
+        Kind::Prefixed(before, _) => as_map(json!({
+            "type": "string", "pattern": format!("^{before}."),
+        })),
         Kind::Choice(names) => as_map(json!({ "enum": names })),
         Kind::Text(_) => as_map(json!({ "type": "string", "minLength": 1 })),
         Kind::Either(kinds) => {

@@ -2,7 +2,7 @@
 
 use crate::{
     Albedo, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Normals, Object,
-    Polynomial, Projection, Refine, RenderSettings, Scene, Surface,
+    Polynomial, Projection, Refine, RenderSettings, Scene, Surface, TextureAxis,
 };
 use std::fmt::{self, Write};
 
@@ -54,7 +54,10 @@ impl Scene {
         writeln!(out, "transparent = {}\n", self.image.transparent)?;
         write_render(out, &self.render)?;
         writeln!(out, "[background]")?;
-        writeln!(out, "color = {:?}", self.background.color)?;
+        match &self.background.environment {
+            Some(image) => writeln!(out, "environment = {}", quoted(&image.as_written))?,
+            None => writeln!(out, "color = {:?}", self.background.color)?,
+        }
         for light in &self.lights {
             write_light(out, light)?;
         }
@@ -122,11 +125,31 @@ fn write_material(out: &mut String, material: &Material) -> fmt::Result {
             writeln!(out, "absorption = {absorption:?}")?;
         }
     }
-    match material.albedo {
+    match &material.albedo {
         // The default depends on the points, so it has no value to write.
         Albedo::Default => Ok(()),
         Albedo::Points => writeln!(out, "albedo = \"points\""),
         Albedo::Color(color) => writeln!(out, "albedo = {color:?}"),
+        Albedo::Attribute { name, color_map, range } => {
+            writeln!(out, "albedo = {}", quoted(&format!("attribute:{name}")))?;
+            writeln!(out, "color_map = \"{}\"", color_map.name())?;
+            match range {
+                Some(range) => writeln!(out, "value_range = {range:?}"),
+                None => Ok(()),
+            }
+        }
+        Albedo::Texture { file, axis } => {
+            writeln!(out, "texture = {}", quoted(&file.as_written))?;
+            let axis = match axis {
+                // The default depends on the points.
+                None => return Ok(()),
+                Some(TextureAxis::X) => "x",
+                Some(TextureAxis::Y) => "y",
+                Some(TextureAxis::Z) => "z",
+                Some(TextureAxis::Uv) => "uv",
+            };
+            writeln!(out, "texture_axis = \"{axis}\"")
+        }
     }
 }
 

@@ -74,6 +74,18 @@ albedo = [0.2, 0.4, 0.6]
 [[objects]]
 points = "b.ply"
 material.albedo = "points"
+
+[[objects]]
+points = "c.ply"
+[objects.material]
+albedo = "attribute:intensity \"raw\""
+color_map = "turbo"
+value_range = [-1, 2.5]
+
+[[objects]]
+points = "d.ply"
+material.texture = "maps/grass.png"
+material.texture_axis = "uv"
 "#;
 
 const SMALL: &str = "[[objects]]\npoints = \"a.ply\"\n";
@@ -81,6 +93,10 @@ const SMALL: &str = "[[objects]]\npoints = \"a.ply\"\n";
 fn read_with(text: &str, overrides: &[&str]) -> Result<Scene, SceneError> {
     let overrides: Vec<String> = overrides.iter().map(|&text| text.into()).collect();
     Scene::from_toml(text, Path::new("scenes/s.toml"), &overrides)
+}
+
+fn image_file(as_written: &str) -> ImageFile {
+    ImageFile { path: Path::new("scenes").join(as_written), as_written: as_written.into() }
 }
 
 fn read(text: &str) -> Result<Scene, SceneError> {
@@ -148,7 +164,7 @@ fn every_built_key_is_read() {
         primary: Primary::Discs,
     };
     assert_eq!(scene.render, render);
-    assert_eq!(scene.background, Background { color: [0.1, 0.2, 1e-7] });
+    assert_eq!(scene.background, Background { color: [0.1, 0.2, 1e-7], environment: None });
     let lights = [
         Light::Directional {
             direction: [-0.4, -1.0, -0.3],
@@ -183,6 +199,14 @@ fn every_built_key_is_read() {
     };
     assert_eq!(scene.objects[0], knot);
     assert_eq!(scene.objects[1].material.albedo, Albedo::Points);
+    let intensity = Albedo::Attribute {
+        name: "intensity \"raw\"".into(),
+        color_map: ColorMap::Turbo,
+        range: Some([-1.0, 2.5]),
+    };
+    assert_eq!(scene.objects[2].material.albedo, intensity);
+    let grass = Albedo::Texture { file: image_file("maps/grass.png"), axis: Some(TextureAxis::Uv) };
+    assert_eq!(scene.objects[3].material.albedo, grass);
 }
 
 #[test]
@@ -216,9 +240,10 @@ fn what_is_left_out_is_the_contracts_default() {
         boundary_clip: true,
         refine: Refine::None,
     };
-    assert_eq!((object.surface, object.material.albedo), (surface, Albedo::Default));
+    assert_eq!((object.surface, &object.material.albedo), (surface, &Albedo::Default));
     assert_eq!(object.surface, Surface::default());
-    assert_eq!((object.material, object.transform), (Material::default(), Transform::default()));
+    assert_eq!(object.material, Material::default());
+    assert_eq!(object.transform, Transform::default());
     assert_eq!((scene.image, scene.render), (ImageSettings::default(), RenderSettings::default()));
     let camera = "[camera]\neye = [0, 0, 1]\ntarget = [0, 0, 0]\n";
     let camera = read(&format!("{camera}{SMALL}")).unwrap().camera.unwrap();
@@ -291,7 +316,7 @@ transfer = [                   # stops, ascending in value
 "#;
     let error = read(text).unwrap_err();
     assert!(error.lines().iter().all(|line| line.contains("known but not built yet")), "{error}");
-    for key in ["material.kind", "material.ior", "material.texture"] {
+    for key in ["material.kind", "material.ior", "material.absorption"] {
         assert!(error.lines().iter().any(|line| line.contains(key)), "{key} in {error}");
     }
     assert!(error.to_string().contains(": objects[0].volume: "), "{error}");
@@ -302,7 +327,6 @@ fn what_is_not_built_says_so_and_is_not_ignored() {
     for (set, path) in [
         ("render.fresnel=sample", "render.fresnel"),
         ("render.loop=queue", "render.loop"),
-        ("background.environment=sky.exr", "background.environment"),
         ("objects.0.filter=x", "objects[0].filter"),
         ("objects.0.material.kind=mirror", "objects[0].material.kind"),
         ("objects.0.material.ior=1.4", "objects[0].material.ior"),
@@ -601,8 +625,8 @@ fn errors_in_overrides_name_the_override() {
                     lower it or leave it out (default 0.6)";
     assert_eq!(error, expected);
     for (set, expected) in [
-        ("objects.2.name=a", "objects: found index '2', but the list has 2"),
-        ("objects.-1.name=a", "use 0 to 1"),
+        ("objects.4.name=a", "objects: found index '4', but the list has 4"),
+        ("objects.-1.name=a", "use 0 to 3"),
         ("objects.name=a", "found index 'name'"),
         ("render.seed.x=1", "render.seed: found 4294967295, which has no 'x'"),
         ("image.size.2=1", "image.size: found index '2'"),
@@ -649,8 +673,11 @@ fn settings_state_every_built_key() {
     let mut keys = Vec::new();
     names(&SCENE, "", &mut keys);
     // No camera has the keys of both projections.
-    let settings =
+    let mut settings =
         read(FULL).unwrap().settings_toml() + &read(&orthographic()).unwrap().settings_toml();
+    // Instead of the colour that FULL has.
+    let sky = read(&format!("background.environment = \"sky.exr\"\n{SMALL}"));
+    settings += &sky.unwrap().settings_toml();
     for (name, path) in keys {
         let stated = settings.lines().any(|line| line.starts_with(&format!("{name} = ")));
         let unseen =
@@ -820,4 +847,91 @@ fn no_dropped_line_panics() {
         let kept = lines.iter().enumerate().filter(|(index, _)| *index != skip);
         let _ = read(&kept.map(|(_, line)| format!("{line}\n")).collect::<String>());
     }
+}
+
+#[test]
+fn environments_are_read_and_written_back() {
+    let scene = read(&format!("background.environment = \"sky.exr\"\n{SMALL}")).unwrap();
+    assert_eq!(scene.background.environment, Some(image_file("sky.exr")));
+    let written = scene.settings_toml();
+    assert!(
+        written.contains("environment = \"sky.exr\"") && !written.contains("color ="),
+        "{written}"
+    );
+    assert_eq!(read(&written).unwrap(), scene);
+}
+
+#[test]
+fn attributes_have_a_map_and_their_own_range_if_none_is_given() {
+    let scene = read_with(SMALL, &["objects.0.material.albedo=attribute:z"]).unwrap();
+    let height = Albedo::Attribute { name: "z".into(), color_map: ColorMap::Viridis, range: None };
+    assert_eq!(scene.objects[0].material.albedo, height);
+    for (map, name) in ColorMap::ALL.into_iter().zip(ColorMap::NAMES) {
+        assert_eq!(map.name(), name);
+        assert_eq!(format!("{map:?}").to_lowercase(), name);
+    }
+}
+
+#[test]
+fn colors_that_exclude_each_other_are_errors() {
+    let cases: [(&[&str], &str); 10] = [
+        (
+            &["objects.0.material.albedo=[1, 1, 1]", "objects.0.material.texture=a.png"],
+            "objects[0].material.texture: found both albedo and texture",
+        ),
+        (
+            &["background.color=[1, 1, 1]", "background.environment=a.exr"],
+            "background.environment: found both color and environment",
+        ),
+        (&["objects.0.material.texture_axis=x"], "there is none; add texture, or remove it"),
+        (
+            &["objects.0.material.color_map=turbo"],
+            "there is none; write albedo = \"attribute:NAME\"",
+        ),
+        (
+            &["objects.0.material.albedo=points", "objects.0.material.value_range=[0, 1]"],
+            "objects[0].material.value_range: belongs to the albedo of an attribute",
+        ),
+        (&["objects.0.material.value_range=[1, 1]"], "the second greater; raise the second"),
+        (&["objects.0.material.value_range=[1]"], "expected two numbers"),
+        (&["objects.0.material.albedo=attribute:"], "found the string \"attribute:\", expected"),
+        (&["objects.0.material.albedo=attribut:z"], "\"attribute:\" and the name of an attribute"),
+        (
+            &["objects.0.material.albedo=attribute:z", "objects.0.material.color_map=virdis"],
+            "did you mean \"viridis\"?",
+        ),
+    ];
+    for (overrides, expected) in cases {
+        let error = error_with(SMALL, overrides);
+        assert!(error.contains(expected) && error.lines().count() == 1, "{overrides:?}: {error}");
+    }
+}
+
+/// A missing image is found before points are read, at its line.
+#[test]
+fn images_that_are_missing_are_found_by_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("s.toml");
+    std::fs::write(folder.path().join("a.ply"), "").unwrap();
+    let text = "background.environment = \"no.exr\"\n[[objects]]\npoints = \"a.ply\"\n\
+                material.texture = \"no.png\"\n";
+    std::fs::write(&scene, text).unwrap();
+    let error = Scene::load(&scene, &[]).unwrap_err().to_string();
+    let lines: Vec<&str> = error.lines().collect();
+    assert_eq!(lines.len(), 2, "{error}");
+    assert!(lines[0].contains(":1:26: background.environment: found no file at"), "{error}");
+    assert!(lines[1].contains(":4:20: objects[0].material.texture: found no file at"), "{error}");
+}
+
+/// The background of a point file rendered directly is nobody's wish, so an environment replaces it.
+#[test]
+fn a_point_file_takes_an_environment() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = folder.path().join("a.ply");
+    std::fs::write(&points, "").unwrap();
+    let sky = folder.path().join("sky.hdr");
+    std::fs::write(&sky, "").unwrap();
+    let set = format!("background.environment={}", sky.display());
+    let scene = Scene::for_point_file(&points, Up::Y, &[set]).unwrap();
+    assert_eq!(scene.background.environment.map(|image| image.path), Some(sky));
 }

@@ -102,3 +102,25 @@ fn a_result_that_cannot_be_written_is_4() {
     assert_eq!(output.status.code(), Some(4), "{output:?}");
     assert!(!output.stderr.is_empty());
 }
+
+/// A PPM is an image, but none that is read.
+#[test]
+fn images_that_are_missing_or_of_no_use_are_2() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(100));
+    folder.write("t.ppm", "P3\n1 1\n255\n9 9 9\n");
+    folder.write("s.toml", "[[objects]]\npoints = \"ball.ply\"\n");
+    let check = |set: &str| run_in(folder.path(), &["check", "s.toml", "--set", set]);
+    check("background.environment=sky.exr")
+        .fails_with(2, &["background.environment", "found no file at 'sky.exr'"]);
+    check("objects.0.material.texture=t.ppm")
+        .fails_with(2, &["t.ppm", "PNG, JPEG, OpenEXR or Radiance"]);
+    check("objects.0.material.albedo=attribute:heat")
+        .fails_with(2, &["attribute:heat", "ball.ply", "it has x, y, z"]);
+    check("objects.0.material.albedo=attribute:z").succeeds();
+    // An output over an input would be its end.
+    let render =
+        ["render", "s.toml", "-o", "t.ppm.png", "--set", "objects.0.material.texture=t.ppm.png"];
+    folder.write("t.ppm.png", "");
+    run_in(folder.path(), &render).fails_with(2, &["t.ppm.png"]);
+}

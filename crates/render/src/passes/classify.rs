@@ -4,8 +4,8 @@ use super::{bind_state, line, state_bindings};
 use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_FILM, SHADE_OBJECTS, STATE_IN, TRACE_HITS, TRACE_POLYNOMIALS, WAVE_LIT, WAVE_LIT_RAYS,
-    WAVE_NEXT, WAVE_PATHS, WaveParams,
+    SHADE_FILM, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, STATE_IN, TRACE_HITS, TRACE_POLYNOMIALS,
+    WAVE_LIT, WAVE_LIT_RAYS, WAVE_NEXT, WAVE_PATHS, WaveParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -18,6 +18,8 @@ pub(crate) struct ClassifyIo<'a> {
     pub hits: &'a Buffer,
     pub objects: &'a Buffer,
     pub film: &'a Buffer,
+    pub images: &'a Buffer,
+    pub texels: &'a Buffer,
     pub paths: &'a Buffer,
     /// One u32 a ray: whether it hit a diffuse surface; then the offset of such rays in a list.
     pub lit: &'a Buffer,
@@ -49,6 +51,8 @@ impl Classify {
             TRACE_HITS,
             SHADE_OBJECTS,
             SHADE_FILM,
+            SHADE_IMAGES,
+            SHADE_TEXELS,
             WAVE_PATHS,
             WAVE_LIT,
             WAVE_NEXT,
@@ -66,6 +70,8 @@ impl Classify {
             .buffer(TRACE_HITS, io.hits)
             .buffer(SHADE_OBJECTS, io.objects)
             .buffer(SHADE_FILM, io.film)
+            .buffer(SHADE_IMAGES, io.images)
+            .buffer(SHADE_TEXELS, io.texels)
             .buffer(WAVE_PATHS, io.paths)
             .buffer(WAVE_LIT, io.lit)
             .buffer(WAVE_NEXT, io.next)

@@ -1,6 +1,7 @@
 //! The passes of a frame. Each owns its pipeline, borrows what it works on, and offers `record`.
 
 mod accumulate;
+mod albedo;
 mod camera_rays;
 mod classify;
 mod disc_count;
@@ -15,6 +16,7 @@ mod shadow_rays;
 mod surface_hit;
 
 pub(crate) use accumulate::Accumulate;
+pub(crate) use albedo::AlbedoIo;
 pub(crate) use camera_rays::CameraRays;
 pub(crate) use classify::{Classify, ClassifyIo};
 pub(crate) use disc_count::DiscCount;

@@ -4,8 +4,8 @@ use super::{bind_state, line, state_bindings};
 use crate::state::RayState;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_FILM, SHADE_OBJECTS, STATE_IN, STATE_OUT, TRACE_HITS, TRACE_INFO, TRACE_POLYNOMIALS,
-    WAVE_NEXT, WAVE_NEXT_PATHS, WAVE_PATHS, WAVE_TALLY, WaveParams,
+    SHADE_FILM, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, STATE_IN, STATE_OUT, TRACE_HITS,
+    TRACE_INFO, TRACE_POLYNOMIALS, WAVE_NEXT, WAVE_NEXT_PATHS, WAVE_PATHS, WAVE_TALLY, WaveParams,
 };
 use kernels::spirv;
 use points::device::Surfaces;
@@ -20,6 +20,8 @@ pub(crate) struct ScatterIo<'a> {
     pub hits: &'a Buffer,
     pub objects: &'a Buffer,
     pub film: &'a Buffer,
+    pub images: &'a Buffer,
+    pub texels: &'a Buffer,
     pub paths: &'a Buffer,
     pub next_paths: &'a Buffer,
     /// Offsets of each ray's rays in the next wave, and one behind the last.
@@ -44,6 +46,8 @@ impl Scatter {
             TRACE_HITS,
             SHADE_OBJECTS,
             SHADE_FILM,
+            SHADE_IMAGES,
+            SHADE_TEXELS,
             WAVE_PATHS,
             WAVE_NEXT_PATHS,
             WAVE_NEXT,
@@ -64,6 +68,8 @@ impl Scatter {
             .buffer(TRACE_HITS, io.hits)
             .buffer(SHADE_OBJECTS, io.objects)
             .buffer(SHADE_FILM, io.film)
+            .buffer(SHADE_IMAGES, io.images)
+            .buffer(SHADE_TEXELS, io.texels)
             .buffer(WAVE_PATHS, io.paths)
             .buffer(WAVE_NEXT_PATHS, io.next_paths)
             .buffer(WAVE_NEXT, io.next)

@@ -1,11 +1,10 @@
 //! The pass `shade`.
 
-use super::{bind_state, line, state_bindings};
+use super::{AlbedoIo, bind_state, line, state_bindings};
 use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_COLORS, SHADE_FILM, SHADE_OBJECTS, STATE_IN, TRACE_POLYNOMIALS, WAVE_LIGHT_SUMS,
-    WAVE_LIT_RAYS, WAVE_PATHS, WaveParams,
+    SHADE_FILM, STATE_IN, TRACE_HITS, WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS, WaveParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -15,9 +14,8 @@ use std::sync::Arc;
 pub(crate) struct ShadeIo<'a> {
     /// The shadow rays, as those towards the last light left them.
     pub shadows: &'a StateImages,
-    pub polynomials: &'a Buffer,
-    pub objects: &'a Buffer,
-    pub colors: &'a Buffer,
+    pub albedos: AlbedoIo<'a>,
+    pub hits: &'a Buffer,
     pub film: &'a Buffer,
     pub paths: &'a Buffer,
     pub lit_rays: &'a Buffer,
@@ -34,15 +32,8 @@ impl Shade {
 
     pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
         let mut bindings = state_bindings(STATE_IN).to_vec();
-        let buffers = [
-            TRACE_POLYNOMIALS,
-            SHADE_OBJECTS,
-            SHADE_COLORS,
-            SHADE_FILM,
-            WAVE_PATHS,
-            WAVE_LIT_RAYS,
-            WAVE_LIGHT_SUMS,
-        ];
+        bindings.extend(AlbedoIo::BINDINGS);
+        let buffers = [TRACE_HITS, SHADE_FILM, WAVE_PATHS, WAVE_LIT_RAYS, WAVE_LIGHT_SUMS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         let params = size_of::<WaveParams>();
         let kernel = Kernel::new(device, Self::NAME, &spirv::shade(), &bindings, params)?;
@@ -51,10 +42,10 @@ impl Shade {
 
     /// Records the shading of a wave's diffuse hits, once every light has been asked.
     pub fn record(&self, rec: &mut Recorder, io: ShadeIo<'_>, params: &WaveParams) {
-        bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, io.shadows)
-            .buffer(TRACE_POLYNOMIALS, io.polynomials)
-            .buffer(SHADE_OBJECTS, io.objects)
-            .buffer(SHADE_COLORS, io.colors)
+        let pass = bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, io.shadows);
+        io.albedos
+            .bind(pass)
+            .buffer(TRACE_HITS, io.hits)
             .buffer(SHADE_FILM, io.film)
             .buffer(WAVE_PATHS, io.paths)
             .buffer(WAVE_LIT_RAYS, io.lit_rays)

@@ -1,0 +1,177 @@
+//! What the points of an object bring to its albedo: colours of their own, an attribute in colours of a
+//! map, or places in a texture; and how a texture is projected.
+
+use crate::PlanError;
+use film::linear_from_srgb;
+use points::PointSet;
+use scene::{ColorMap, Object, TextureAxis, Transform};
+
+/// Names that exporters give to the two places of a point in a texture.
+const UV: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
+/// Places beyond are as good as infinite, which no arithmetic likes.
+const FAR: f64 = 1e6;
+/// Under this, a bounding box is flat.
+const FLAT: f64 = 1e-30;
+
+/// Colours as files have them, without what no picture can show.
+pub(crate) fn own_colors(colors: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    let clean = |c: f32| if c.is_nan() { 0.0 } else { c.clamp(0.0, 1e15) };
+    colors.iter().map(|color| color.map(clean)).collect()
+}
+
+/// The colours of an attribute of the object's points, linear. What is no number is black.
+pub(crate) fn attribute_colors(
+    object: &Object,
+    set: &PointSet,
+    (name, map, range): (&str, ColorMap, Option<[f64; 2]>),
+) -> Result<Vec<[f32; 3]>, PlanError> {
+    let axis = ["x", "y", "z"].iter().position(|axis| *axis == name);
+    let values: Vec<f64> = match (set.attribute(name), axis) {
+        (Some(values), _) => values.iter().collect(),
+        (None, Some(axis)) => set.positions.iter().map(|p| p[axis]).collect(),
+        (None, None) => {
+            let known = set.attributes.iter().map(|attribute| attribute.name.as_str());
+            return Err(PlanError::NoAttribute {
+                name: object.name.clone(),
+                attribute: name.to_owned(),
+                file: object.points.display().to_string(),
+                known: known.chain(["x", "y", "z"]).collect::<Vec<_>>().join(", "),
+            });
+        }
+    };
+    let own_range = || {
+        let finite = values.iter().copied().filter(|value| value.is_finite());
+        finite.fold(None, |range: Option<[f64; 2]>, value| {
+            Some(range.map_or([value; 2], |[low, high]| [low.min(value), high.max(value)]))
+        })
+    };
+    let Some([low, high]) = range.or_else(own_range) else {
+        return Err(PlanError::NoValues {
+            name: object.name.clone(),
+            attribute: name.to_owned(),
+            file: object.points.display().to_string(),
+        });
+    };
+    let span = high - low;
+    let color = |value: f64| {
+        if value.is_nan() {
+            return [0.0; 3];
+        }
+        // Halves, so that no difference of two numbers overflows.
+        let part = match span > 0.0 {
+            true => (0.5 * value - 0.5 * low) / (0.5 * high - 0.5 * low),
+            false => 0.5,
+        };
+        mapped(map, part.clamp(0.0, 1.0))
+    };
+    Ok(values.into_iter().map(color).collect())
+}
+
+/// The colour of a map at 0..=1, linear.
+fn mapped(map: ColorMap, part: f64) -> [f32; 3] {
+    let gradient = match map {
+        ColorMap::Viridis => colorous::VIRIDIS,
+        ColorMap::Turbo => colorous::TURBO,
+        ColorMap::Magma => colorous::MAGMA,
+        ColorMap::Inferno => colorous::INFERNO,
+        ColorMap::Plasma => colorous::PLASMA,
+        ColorMap::Cividis => colorous::CIVIDIS,
+        ColorMap::Gray => return [linear_from_srgb(part) as f32; 3],
+    };
+    let colorous::Color { r, g, b } = gradient.eval_continuous(part);
+    [r, g, b].map(|byte| linear_from_srgb(f64::from(byte) / 255.0) as f32)
+}
+
+/// Column over width and row over height of each point in its object's texture, if the points have them.
+pub(crate) fn places(set: &PointSet) -> Option<Vec<[f32; 2]>> {
+    let [u, v] = UV.into_iter().find_map(|[u, v]| Some([set.attribute(u)?, set.attribute(v)?]))?;
+    let place = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-FAR, FAR) as f32 };
+    // v counts from the bottom row upwards.
+    Some(u.iter().zip(v.iter()).map(|(u, v)| [place(u), place(1.0 - v)]).collect())
+}
+
+/// Rows of the map from the centred scene to column over width and row over height of a texture that is
+/// projected over the bounding box of the points, in their file's coordinates.
+pub(crate) fn projection(
+    axis: TextureAxis,
+    set: &PointSet,
+    transform: &Transform,
+    origin: [f64; 3],
+) -> [[f32; 4]; 2] {
+    let (min, max) = set.bounds().unwrap_or_default();
+    let rotation = transform.rotation();
+    // The file's coordinate over the box, from its lower end or from its upper one.
+    let row = |axis: usize, from_above: bool| {
+        let extent = max[axis] - min[axis];
+        let column = [0, 1, 2].map(|i| rotation[i][axis] / transform.scale);
+        let at_origin: f64 = (0..3).map(|i| column[i] * (origin[i] - transform.translate[i])).sum();
+        if !(extent * transform.scale > FLAT && extent.is_finite()) {
+            return [0.0, 0.0, 0.0, 0.5];
+        }
+        let (sign, begin) = if from_above { (-1.0, max[axis]) } else { (1.0, min[axis]) };
+        let [x, y, z] = column.map(|c| (sign * c / extent) as f32);
+        [x, y, z, (sign * (at_origin - begin) / extent) as f32]
+    };
+    match axis {
+        TextureAxis::X => [row(2, true), row(1, true)],
+        TextureAxis::Y | TextureAxis::Uv => [row(0, false), row(2, false)],
+        TextureAxis::Z => [row(0, false), row(1, true)],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The ends and the middle of the maps, as matplotlib and Google publish them.
+    #[test]
+    fn maps_begin_and_end_as_published() {
+        let byte = |map, part| mapped(map, part).map(film::srgb_byte);
+        assert_eq!(byte(ColorMap::Viridis, 0.0), [68, 1, 84]);
+        assert_eq!(byte(ColorMap::Viridis, 1.0), [253, 231, 37]);
+        assert_eq!(byte(ColorMap::Magma, 0.0), [0, 0, 4]);
+        assert_eq!(byte(ColorMap::Gray, 0.5), [128; 3]);
+        for map in ColorMap::ALL {
+            for i in 0..=100 {
+                assert!(mapped(map, f64::from(i) / 100.0).iter().all(|c| (0.0..=1.0).contains(c)));
+            }
+        }
+    }
+
+    /// Corners of the box, turned, scaled and moved with the object.
+    #[test]
+    fn projections_stick_to_the_object() {
+        let positions = vec![[1.0, 2.0, 3.0], [5.0, 4.0, 13.0]];
+        let set = PointSet { file_index: vec![0, 1], positions, ..PointSet::default() };
+        let transform =
+            Transform { scale: 2.5, rotate: [20.0, -70.0, 130.0], translate: [1e5, -2.0, 30.0] };
+        let origin = [99_990.0, 3.0, 20.0];
+        // Where the file's corner lies in the picture: from the left, from the top.
+        let cases = [
+            (TextureAxis::Y, [1.0, 2.0, 3.0], [0.0, 0.0]),
+            (TextureAxis::Y, [5.0, 2.0, 8.0], [1.0, 0.5]),
+            (TextureAxis::Z, [1.0, 4.0, 3.0], [0.0, 0.0]),
+            (TextureAxis::Z, [2.0, 2.0, 9.0], [0.25, 1.0]),
+            (TextureAxis::X, [3.0, 4.0, 13.0], [0.0, 0.0]),
+            (TextureAxis::X, [3.0, 3.5, 3.0], [1.0, 0.25]),
+        ];
+        for (axis, corner, expected) in cases {
+            let world = transform.apply(corner);
+            let x = [0, 1, 2].map(|i| world[i] - origin[i]);
+            let rows = projection(axis, &set, &transform, origin);
+            for (row, expected) in rows.into_iter().zip(expected) {
+                let at = (0..3).map(|i| f64::from(row[i]) * x[i]).sum::<f64>() + f64::from(row[3]);
+                // Terms reach about 5, so f32 leaves 3e-7 each.
+                assert!((at - expected).abs() < 2e-6, "{axis:?} {corner:?}: {at}, not {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_flat_box_has_its_picture_in_the_middle() {
+        let positions = vec![[1.0, 2.0, 3.0], [5.0, 2.0, 13.0]];
+        let set = PointSet { file_index: vec![0, 1], positions, ..PointSet::default() };
+        let [_, row] = projection(TextureAxis::Z, &set, &Transform::IDENTITY, [0.0; 3]);
+        assert_eq!(row, [0.0, 0.0, 0.0, 0.5]);
+    }
+}

@@ -1,0 +1,74 @@
+//! Twin of `glsl/shared/albedo.glsl`: the share of light that the surface of an object scatters back.
+
+use crate::blend::weight_at;
+use crate::grid::Grid;
+use crate::grid_build::CellLists;
+use crate::image::Images;
+use crate::polynomial::Polynomial;
+use crate::real::{Real, V3};
+use kernels::layout::{NONE, ObjectInfo};
+
+const MOST_ASKED: usize = 2048;
+
+/// What albedos depend on.
+#[derive(Debug, Clone, Copy)]
+pub struct Albedos<'a, R> {
+    /// Where the grid lies.
+    pub grid: &'a Grid<R>,
+    /// The points of each cell.
+    pub lists: &'a CellLists,
+    /// By slot.
+    pub polynomials: &'a [Polynomial<R>],
+    /// One an object.
+    pub objects: &'a [ObjectInfo],
+    /// Three floats a point of each object that has colours, two where it has a texture.
+    pub colors: &'a [f32],
+    /// Textures and environment.
+    pub images: Images<'a>,
+}
+
+impl<R: Real> Albedos<'_, R> {
+    fn value_of(&self, object: &ObjectInfo, slot: u32) -> V3<R> {
+        let stride = if object.texture == NONE { 3 } else { 2 };
+        let at = (object.first_color + stride * (slot - object.first_slot)) as usize;
+        let mut value = [0.0; 3];
+        value[..stride as usize].copy_from_slice(&self.colors[at..at + stride as usize]);
+        V3::of_f32(value)
+    }
+
+    /// The mean over the points of the object around x; where none has a weight, the value of the point
+    /// that was hit.
+    fn blended_value(&self, object: &ObjectInfo, index: u32, slot: u32, x: V3<R>) -> V3<R> {
+        let cell = self.grid.cell_id(self.grid.cell_of(x)) as usize;
+        let [first, end] = self.lists.cells[cell].map(|entry| entry as usize);
+        let own = (self.value_of(object, slot).times(R::of(1e-6)), R::of(1e-6));
+        let (sum, weights) = self.lists.slots[first..end.min(first + MOST_ASKED)]
+            .iter()
+            .map(|&near| (near, &self.polynomials[near as usize]))
+            .filter(|(_, p)| p.object == index)
+            .fold(own, |(sum, weights), (near, p)| {
+                let (weight, _) = weight_at(p, x);
+                (sum + self.value_of(object, near).times(weight), weights + weight)
+            });
+        sum.over(weights)
+    }
+
+    /// The albedo at x of the object at `index`, whose point at `slot` was hit.
+    #[must_use]
+    pub fn albedo_at(&self, index: u32, slot: u32, x: V3<R>) -> V3<R> {
+        let object = &self.objects[index as usize];
+        let value =
+            (object.first_color != NONE).then(|| self.blended_value(object, index, slot, x));
+        if object.texture == NONE {
+            return value.unwrap_or_else(|| V3::of_f32(object.albedo));
+        }
+        let along =
+            |[x, y, z, w]: [f32; 4], at: V3<R>| V3::of_f32([x, y, z]).dot(at) + R::of_f32(w);
+        let [u, v, _] = value.map_or_else(
+            || [along(object.texture_u, x), along(object.texture_v, x), R::of(0.0)],
+            |value| value.0,
+        );
+        let image = &self.images.infos[object.texture as usize];
+        self.images.image_at(image, u, v, false)
+    }
+}

@@ -1,0 +1,90 @@
+//! Twin of `glsl/shared/environment.glsl`: what rays that hit nothing see.
+
+use crate::image::Images;
+use crate::real::{Real, V3};
+use kernels::layout::{BackgroundInfo, ImageInfo, NONE};
+use std::f64::consts::{FRAC_1_PI, PI};
+
+/// The colour of an equirectangular image in a direction of any length: +y is its top row, −z its
+/// middle, +x right of that.
+#[must_use]
+pub fn environment<R: Real>(images: Images<'_>, image: &ImageInfo, direction: V3<R>) -> V3<R> {
+    let V3([x, y, z]) = direction;
+    let level = (x * x + z * z).sqrt();
+    let u = R::of(0.5) + x.arc_tangent(-z) * R::of(0.5 / PI);
+    let v = level.arc_tangent(y) * R::of(FRAC_1_PI);
+    images.image_at(image, u, v, true)
+}
+
+/// The background in a direction.
+#[must_use]
+pub fn background_at<R: Real>(
+    images: Images<'_>,
+    background: &BackgroundInfo,
+    direction: V3<R>,
+) -> V3<R> {
+    match background.environment {
+        NONE => V3::of_f32(background.color),
+        at => environment(images, &images.infos[at as usize], direction),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use kernels::layout::IMAGE_LINEAR;
+
+    /// 64 x 32 texels that hold their own column, row and 7.
+    fn places() -> (ImageInfo, Vec<u32>) {
+        let texels = (0..64 * 32u32)
+            .flat_map(|i| [(i % 64) as f32, (i / 64) as f32, 7.0].map(f32::to_bits))
+            .collect();
+        (ImageInfo { first: 0, width: 64, height: 32, format: IMAGE_LINEAR }, texels)
+    }
+
+    fn seen<R: Real>(direction: [f64; 3]) -> [f64; 3] {
+        let (info, texels) = places();
+        let images = Images { infos: &[info], texels: &texels };
+        let color: V3<R> = environment(images, &info, V3(direction.map(R::of)));
+        color.0.map(|c| f64::from(c.to_f32()))
+    }
+
+    /// u = 1/2 + atan2(x, -z) / 2 pi of 64 columns, v = acos(y) / pi of 32 rows, half a texel less.
+    #[test]
+    fn each_axis_sees_its_texel() {
+        let cases = [
+            ([0.0, 0.0, -1.0], [31.5, 15.5]),
+            ([1.0, 0.0, 0.0], [47.5, 15.5]),
+            ([-1.0, 0.0, 0.0], [15.5, 15.5]),
+            // On the seam: between column 63 and column 0.
+            ([0.0, 0.0, 1.0], [31.5, 15.5]),
+            ([0.0, 1.0, 0.0], [31.5, 0.0]),
+            ([0.0, -1.0, 0.0], [31.5, 31.0]),
+            ([1.0, 1.0, 0.0], [47.5, 7.5]),
+            // Just beside the seam: the last column, and the first.
+            ([(PI / 64.0).sin(), 0.0, (PI / 64.0).cos()], [63.0, 15.5]),
+            ([-(PI / 64.0).sin(), 0.0, (PI / 64.0).cos()], [0.0, 15.5]),
+        ];
+        for (direction, [column, row]) in cases {
+            for [found_column, found_row, seven] in [seen::<f32>(direction), seen::<f64>(direction)]
+            {
+                // f32 rounds u to 1.2e-7, which are 8e-6 columns; at the seam one column is 63.
+                assert!((found_column - column).abs() < 6e-4, "{direction:?}: {found_column}");
+                assert!((found_row - row).abs() < 1e-5, "{direction:?}: {found_row}");
+                assert_eq!(seven, 7.0);
+            }
+        }
+    }
+
+    /// Near the poles the arc cosine of y would be off by up to sqrt(2^-24) = 2.4e-4 rad, or 2.5e-3 rows.
+    #[test]
+    fn rows_are_right_up_to_the_poles() {
+        for i in 0..10_000 {
+            let angle = PI * (f64::from(i) + 0.5) / 10_000.0;
+            let direction = [0.6 * angle.sin(), angle.cos(), 0.8 * angle.sin()];
+            let row = (32.0 * angle / PI - 0.5).clamp(0.0, 31.0);
+            let [_, found, _] = seen::<f32>(direction);
+            assert!((found - row).abs() < 2e-5, "angle {angle}: row {found}, not {row}");
+        }
+    }
+}

@@ -1,0 +1,78 @@
+// albedo: the share of light that the surface of an object scatters back at a hit.
+//
+// twin    crates/reference/src/albedo.rs
+// reads   the object's own, its texture, or what its points have: colours, or places in the texture
+// Its buffers are bound by AlbedoIo in crates/render/src/passes/albedo.rs. Kernels that include it need
+// not declare polynomials, objects, cells and slots again.
+#ifndef ALBEDO_GLSL
+#define ALBEDO_GLSL
+#include "blend.glsl"
+#include "grid.glsl"
+#include "image.glsl"
+
+layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
+layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
+layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
+layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
+layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
+layout(std430, binding = SHADE_COLORS) readonly buffer Colors { float colors[]; };
+
+// Points of a cell that are asked. Two loops over so many stay under what lavapipe allows a dispatch.
+#define MOST_ASKED 2048u
+#define ASKED_AT_ONCE 32u
+
+// What a point of the object has: a colour, or with a texture its place in it.
+vec3 value_of(ObjectInfo object, uint slot) {
+    bool is_color = object.texture == NONE;
+    uint at = object.first_color + (is_color ? 3u : 2u) * (slot - object.first_slot);
+    return vec3(colors[at], colors[at + 1u], is_color ? colors[at + 2u] : 0.0);
+}
+
+// The mean over the points of the object around x, by the weights of normals that are blended; where
+// none has a weight, what the point at `slot` has. The object's points have values.
+// First the trust balls that hold x, up to 32 into a bit mask, then their weights: few of a cell do.
+vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
+    vec3 sum = 1e-6 * value_of(object, slot);
+    float weights = 1e-6;
+    uvec2 range = cells[cell_id(grid, cell_of(grid, x))];
+    uint end = object.first_color != NONE ? min(range.y, range.x + MOST_ASKED) : range.x;
+    for (uint first = range.x; first < end; first += ASKED_AT_ONCE) {
+        uint count = min(end - first, ASKED_AT_ONCE);
+        uint holding = 0u;
+        for (uint i = 0u; i < count; ++i) {
+            uint near = slots[first + i];
+            vec4 ball = polynomials[near].center_trust;
+            vec3 y = x - ball.xyz;
+            bool holds = near - object.first_slot < object.slot_count && dot3(y, y) < ball.w * ball.w;
+            holding |= holds ? 1u << i : 0u;
+        }
+        while (holding != 0u) {
+            uint near = slots[first + uint(findLSB(holding))];
+            holding &= holding - 1u;
+            vec3 normal;
+            float weight = weight_at(polynomials[near], x, normal);
+            sum += weight * value_of(object, near);
+            weights += weight;
+        }
+    }
+    return sum / weights;
+}
+
+// The albedo at x of the object at `index`, whose point at `slot` was hit.
+vec3 albedo_at(uint index, uint slot, vec3 x) {
+    ObjectInfo object = objects[index];
+    vec3 value = vec3(0.0);
+    uint value_count = object.first_color != NONE ? 1u : 0u;
+    for (uint i = 0u; i < value_count; ++i) value = blended_value(object, slot, x);
+    bool has_texture = object.texture != NONE;
+    vec3 color = value_count > 0u && !has_texture ? value : object.albedo;
+    float u = dot3(object.texture_u.xyz, x) + object.texture_u.w;
+    float v = dot3(object.texture_v.xyz, x) + object.texture_v.w;
+    u = value_count > 0u ? value.x : u;
+    v = value_count > 0u ? value.y : v;
+    // A loop of one or none: lavapipe runs both sides of an `if` for every pixel.
+    uint texture_count = has_texture ? 1u : 0u;
+    for (uint i = 0u; i < texture_count; ++i) color = image_at(images[object.texture], u, v, false);
+    return color;
+}
+#endif
