@@ -67,11 +67,12 @@ void main() {
 
     bool from_camera = params.wave == 0u;
     bool left_out = from_camera && params.transparent != 0u;
-    vec3 behind = found || left_out ? vec3(0.0) : throughput * background_at(params.background, ray.direction);
+    vec3 background = found || left_out ? vec3(0.0) : throughput * background_at(params.background, ray.direction);
+    vec3 behind = paths[at].emitted + background;
     if (from_camera) {
         float depth = hit.t * dot3(ray.direction, params.forward);
         uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, hit.status >> HIT_TOTAL_SHIFT);
-        film[pixel] = FilmPixel(vec4(behind, found ? 1.0 : 0.0),
+        film[pixel] = FilmPixel(vec4(found ? vec3(0.0) : behind, found ? 1.0 : paths[at].coverage),
                                 found ? vec4(hit.position, depth) : vec4(0.0, 0.0, 0.0, INFINITE_DEPTH),
                                 found ? vec4(hit.normal, float(object)) : vec4(0.0, 0.0, 0.0, -1.0), counts);
     } else {

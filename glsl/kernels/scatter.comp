@@ -58,6 +58,8 @@ void store_path(uint to, uint from, vec3 throughput, uint channels, bool bounces
     }
     uint after = leaves ? count - 1u : min(count + 1u, MOST_MEDIA);
     next_paths[to].media_count = toggles ? after : count;
+    next_paths[to].emitted = paths[from].emitted;
+    next_paths[to].coverage = paths[from].coverage;
 }
 
 void main() {
@@ -99,7 +101,8 @@ void main() {
             if (reflects) atomicAdd(reflected_count, 1u);
             else atomicAdd(refracted_count, 1u);
         } else {
-            write_channels(paths[at].pixel, channels, throughput * background_at(params.background, direction));
+            vec3 background = throughput * background_at(params.background, direction);
+            write_channels(paths[at].pixel, channels, paths[at].emitted + background);
         }
     }
 }

@@ -37,5 +37,6 @@ void main() {
     uint pixel = paths[ray].pixel;
     vec3 light = params.light_count > 0u ? gathered(at, pixel) : vec3(0.0);
     vec3 albedo = albedo_at(polynomials[slot].object, slot, hits[ray].position);
-    write_channels(pixel, paths[ray].channels, paths[ray].throughput * (albedo * (light * INVERSE_PI)));
+    vec3 scattered = paths[ray].throughput * (albedo * (light * INVERSE_PI));
+    write_channels(pixel, paths[ray].channels, paths[ray].emitted + scattered);
 }

@@ -97,11 +97,20 @@
 #define MATERIAL_MIRROR 1
 #define MATERIAL_GLASS 2
 
+// How a volume's points are blended.
+#define VOLUME_SHEPARD 0
+#define VOLUME_SUM 1
+
 #define MOST_CROSSINGS 1024 // surfaces a path may pass through that do not change its medium
 #define CHANNELS_ALL 7 // a path's channels: 1 red, 2 green, 4 blue
 #define CAMERA_FILTER 28
 #define FILM_SUMS 29
 #define CAMERA_PATH 32
+#define MARCH_VOLUMES 33
+#define MARCH_CELLS 34
+#define MARCH_POINTS 35
+#define MARCH_STOPS 36
+#define MARCH_STATE 37
 #define SHADE_IMAGES 30
 #define SHADE_TEXELS 31
 
@@ -330,7 +339,7 @@ struct Hit {             // 32 bytes
 };
 
 // What a ray has behind it.
-struct Path {            // 64 bytes
+struct Path {            // 80 bytes
     vec3 throughput;     //  0  what of the light it finds arrives at the pixel
     uint pixel;          // 12  of the tile, row by row; NONE: no ray at all
     uint channels;       // 16  bits of CHANNELS_ALL
@@ -338,6 +347,63 @@ struct Path {            // 64 bytes
     uint crossings;      // 24  surfaces passed through so far
     uint media_count;    // 28  objects that it is inside
     uint media[MEDIA_WORDS]; // 32  those, 16 bits each, in no order
+    vec3 emitted;        // 64  what volumes on its way have sent to the pixel
+    float coverage;      // 76  of the volumes on the way from the camera
+};
+
+// A field between points (section 6 of the paper).
+struct VolumeInfo {      // 80 bytes
+    GridInfo grid;       //  0  over the points' bounding box grown by the radius
+    uint first_cell;     // 32  in the cells of all volumes
+    uint first_stop;     // 36  in the stops of all volumes
+    uint stop_count;     // 40
+    uint kernel;         // 44  VOLUME_*
+    float square_radius; // 48  of a point's reach
+    float inverse_width; // 52  1 / 2 rho
+    uint object;         // 56
+    uint bounded;        // 60  1: it counts inside the object's surface alone
+    uint pad[4];         // 64
+};
+
+struct VolumeCell {      // 8 bytes
+    uint first;          //  0  point in the points of all volumes; the next cell's is the end
+    uint counts;         //  4  1: something between here may be seen
+};
+
+struct VolumePoint {     // 16 bytes
+    vec3 position;       //  0  centred scene space
+    float scalar;        // 12
+};
+
+// Of a transfer function, ascending in value.
+struct VolumeStop {      // 32 bytes
+    vec3 color;          //  0
+    float extinction;    // 12
+    float value;         // 16
+    uint pad[3];         // 20
+};
+
+// How far a ray has marched through volumes.
+struct March {           // 64 bytes
+    vec3 color;          //  0  emitted towards its start so far
+    float transmittance; // 12
+    vec3 sample_color;   // 16  of this sample, each volume's by its extinction
+    float sample_extinction; // 28
+    float numerator;     // 32  of this volume's scalar
+    float denominator;   // 36
+    uint state;          // 40  0: not begun, 1: on its way, 2: done
+    uint place;          // 44  sample
+    uint volume;         // 48
+    uint row;            // 52  of cells around the sample
+    uint cursor;         // 56  points of the row that are done
+    uint pad;            // 60
+};
+
+struct MarchParams {     // 16 bytes
+    uint ray_count;      //  0
+    uint volume_count;   //  4
+    float step;          //  8
+    uint work;           // 12  loop iterations a ray may spend in this pass
 };
 
 // At a diffuse hit.

@@ -192,6 +192,20 @@ constants! {
     FILM_SUMS = 29;
     /// Binding of `camera_rays`: the [`Path`] of every ray, but for its pixel.
     CAMERA_PATH = 32;
+    /// Binding of `march`: [`VolumeInfo`]s.
+    MARCH_VOLUMES = 33;
+    /// Binding of `march`: [`VolumeCell`]s of all volumes.
+    MARCH_CELLS = 34;
+    /// Binding of `march`: [`VolumePoint`]s of all volumes.
+    MARCH_POINTS = 35;
+    /// Binding of `march`: [`VolumeStop`]s of all volumes.
+    MARCH_STOPS = 36;
+    /// Binding of `march`: [`March`] by ray.
+    MARCH_STATE = 37;
+    /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
+    VOLUME_SHEPARD = 0;
+    /// [`VolumeInfo::kernel`] of the weighted sum.
+    VOLUME_SUM = 1;
     /// Binding of `shade`: [`ImageInfo`]s.
     SHADE_IMAGES = 30;
     /// Binding of `shade`: a table of sRGB, and the texels of all images.
@@ -679,10 +693,131 @@ pub struct Path {
     pub media_count: u32,
     /// Those, 16 bits each, in no order.
     pub media: [u32; MEDIA_WORDS as usize],
+    /// What volumes on its way have sent to the pixel.
+    pub emitted: [f32; 3],
+    /// Of the volumes on the way from the camera.
+    pub coverage: f32,
 }
-gpu_layout!(Path, 64, {
+gpu_layout!(Path, 80, {
     throughput: 0, pixel: 12, channels: 16, bounces: 20, crossings: 24, media_count: 28, media: 32,
+    emitted: 64, coverage: 76,
 });
+
+/// A field between points (\[T\] §6).
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct VolumeInfo {
+    /// Over the points' bounding box grown by the radius.
+    pub grid: GridInfo,
+    /// In the cells of all volumes.
+    pub first_cell: u32,
+    /// In the stops of all volumes.
+    pub first_stop: u32,
+    /// Stops of its transfer function.
+    pub stop_count: u32,
+    /// One of `VOLUME_*`.
+    pub kernel: u32,
+    /// Of a point's reach.
+    pub square_radius: f32,
+    /// 1 / 2ρ.
+    pub inverse_width: f32,
+    /// Index of the object in the scene.
+    pub object: u32,
+    /// 1: it counts inside the object's surface alone.
+    pub bounded: u32,
+    /// Unused.
+    pub pad: [u32; 4],
+}
+gpu_layout!(VolumeInfo, 80, {
+    grid: 0, first_cell: 32, first_stop: 36, stop_count: 40, kernel: 44, square_radius: 48,
+    inverse_width: 52, object: 56, bounded: 60, pad: 64,
+});
+
+/// A cell of a volume's grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct VolumeCell {
+    /// Point in the points of all volumes; the next cell's is the end.
+    pub first: u32,
+    /// 1 where something between here may be seen.
+    pub counts: u32,
+}
+gpu_layout!(VolumeCell, 8, { first: 0, counts: 4 });
+
+/// A point of a volume.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct VolumePoint {
+    /// Centred scene space.
+    pub position: [f32; 3],
+    /// What it carries.
+    pub scalar: f32,
+}
+gpu_layout!(VolumePoint, 16, { position: 0, scalar: 12 });
+
+/// A stop of a transfer function.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct VolumeStop {
+    /// Linear RGB.
+    pub color: [f32; 3],
+    /// σ, per unit of length.
+    pub extinction: f32,
+    /// The scalar at this stop.
+    pub value: f32,
+    /// Unused.
+    pub pad: [u32; 3],
+}
+gpu_layout!(VolumeStop, 32, { color: 0, extinction: 12, value: 16, pad: 20 });
+
+/// How far a ray has marched through volumes.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct March {
+    /// Emitted towards its start so far.
+    pub color: [f32; 3],
+    /// What comes through from behind.
+    pub transmittance: f32,
+    /// Of this sample, each volume's by its extinction.
+    pub sample_color: [f32; 3],
+    /// Of this sample.
+    pub sample_extinction: f32,
+    /// Of this volume's scalar.
+    pub numerator: f32,
+    /// Of this volume's scalar.
+    pub denominator: f32,
+    /// 0: not begun, 1: on its way, 2: done.
+    pub state: u32,
+    /// Sample.
+    pub place: u32,
+    /// Volume.
+    pub volume: u32,
+    /// Of cells around the sample.
+    pub row: u32,
+    /// Points of the row that are done.
+    pub cursor: u32,
+    /// Unused.
+    pub pad: u32,
+}
+gpu_layout!(March, 64, {
+    color: 0, transmittance: 12, sample_color: 16, sample_extinction: 28, numerator: 32,
+    denominator: 36, state: 40, place: 44, volume: 48, row: 52, cursor: 56, pad: 60,
+});
+
+/// Push constants of `march`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct MarchParams {
+    /// Rays.
+    pub ray_count: u32,
+    /// Volumes of the scene.
+    pub volume_count: u32,
+    /// Distance of the samples.
+    pub step: f32,
+    /// Loop iterations a ray may spend in this pass.
+    pub work: u32,
+}
+gpu_layout!(MarchParams, 16, { ray_count: 0, volume_count: 4, step: 8, work: 12 });
 
 /// Light at a diffuse hit.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -764,6 +899,12 @@ pub const STRUCTS: &[StructLayout] = &[
     Light::LAYOUT,
     Hit::LAYOUT,
     Path::LAYOUT,
+    VolumeInfo::LAYOUT,
+    VolumeCell::LAYOUT,
+    VolumePoint::LAYOUT,
+    VolumeStop::LAYOUT,
+    March::LAYOUT,
+    MarchParams::LAYOUT,
     LightSum::LAYOUT,
     FilmPixel::LAYOUT,
     FilmSum::LAYOUT,

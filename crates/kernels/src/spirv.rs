@@ -64,6 +64,10 @@ modules! {
     list_lit,
     /// The points of each cell with their positions.
     list_points,
+    /// Rays through volumes.
+    march,
+    /// Shadow rays through volumes.
+    march_shadows,
     /// One iteration of each pending hit towards the point set surface.
     refine,
     /// The same, reading points through a uniform texel buffer.
@@ -94,6 +98,7 @@ pub const VARIANTS: &[(&str, &str, &[&str])] = &[
     ("grid_trace_leaving", "grid_trace", &["LEAVES"]),
     ("grid_trace_leaving_texels", "grid_trace", &["LEAVES", "RECORDS_AS_TEXELS"]),
     ("grid_trace_texels", "grid_trace", &["RECORDS_AS_TEXELS"]),
+    ("march_shadows", "march", &["SHADOWS"]),
     ("refine_texels", "refine", &["RECORDS_AS_TEXELS"]),
 ];
 

@@ -5,7 +5,7 @@
 //! mean of all points' by more than so many standard deviations, and at least twice that mean: on even
 //! points deviations are so small that corners would go.
 
-use points::{Attribute, Cloud, CloudError, NeighborSearch, ObjectPoints, PointSet, Values};
+use points::{Cloud, CloudError, NeighborSearch, ObjectPoints, PointSet};
 
 /// The set without its isolated points, and how many those are; `None` where there are none.
 ///
@@ -61,30 +61,7 @@ fn mean_distances(set: &PointSet, neighbors: u32) -> Result<Vec<f64>, CloudError
 fn without_far(set: &PointSet, distances: &[f64], limit: f64) -> Option<PointSet> {
     let near = || distances.iter().map(|&d| d <= limit);
     let left = near().filter(|&near| near).count();
-    (left > 0 && left < set.len()).then(|| PointSet {
-        positions: keep(&set.positions, near()),
-        file_index: keep(&set.file_index, near()),
-        colors: set.colors.as_ref().map(|colors| keep(colors, near())),
-        color_encoding: set.color_encoding,
-        attributes: set
-            .attributes
-            .iter()
-            .map(|attribute| Attribute {
-                name: attribute.name.clone(),
-                values: match &attribute.values {
-                    Values::F32(values) => Values::F32(keep(values, near())),
-                    Values::F64(values) => Values::F64(keep(values, near())),
-                },
-            })
-            .collect(),
-        format: set.format.clone(),
-        non_finite: set.non_finite,
-        ..PointSet::default()
-    })
-}
-
-fn keep<T: Copy>(values: &[T], near: impl Iterator<Item = bool>) -> Vec<T> {
-    values.iter().zip(near).filter_map(|(&value, near)| near.then_some(value)).collect()
+    (left > 0 && left < set.len()).then(|| set.filtered(|i| distances[i] <= limit))
 }
 
 fn distance(a: [f32; 3], b: [f32; 3]) -> f64 {
@@ -94,6 +71,7 @@ fn distance(a: [f32; 3], b: [f32; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use points::{Attribute, Values};
 
     fn grid_and(strays: &[[f64; 3]]) -> PointSet {
         let mut positions: Vec<[f64; 3]> =

@@ -14,12 +14,14 @@ mod images;
 mod inside;
 mod isolated;
 mod picture;
+mod volumes;
 
 pub use camera::View;
 pub use diagnostic::Diagnostic;
 pub use discs::{MAX_DISC_PAIRS, screen_tiles};
 pub use images::{Cleaned, SceneImages};
 pub use picture::{Picture, Rays};
+pub use volumes::Volumes;
 
 use images::{ImageList, Use};
 use kernels::layout::{
@@ -80,6 +82,8 @@ pub struct Plan {
     pub filter: Vec<f32>,
     /// Parameters of `camera_rays`, but for tile and sample.
     pub camera: CameraParams,
+    /// Volumes of the scene.
+    pub volumes: Volumes,
     /// Objects of glass that rays from the camera start inside of.
     pub camera_media: Vec<u32>,
     /// Parameters of the kernels that scatter and shade, but for the tile and the wave.
@@ -129,6 +133,21 @@ pub enum PlanError {
         name: String,
         /// Its point file.
         file: String,
+    },
+    /// A volume asks for an attribute that the file lacks.
+    #[error(
+        "object '{name}': its volume asks for the attribute '{attribute}' but {file} has none of that name; \
+         it has {known}"
+    )]
+    NoVolumeAttribute {
+        /// The object.
+        name: String,
+        /// What was asked for.
+        attribute: String,
+        /// Its point file.
+        file: String,
+        /// Names that would do.
+        known: String,
     },
     /// A material asks for an attribute that the file lacks.
     #[error(
@@ -213,18 +232,19 @@ impl Plan {
         let (sets, isolated) = drop_isolated(scene, sets)?;
         let image_size = scene.image.size;
         let window = checked_crop(crop, image_size)?;
-        let world: Vec<Vec<[f64; 3]>> = scene
-            .objects
+        let world = in_world(scene, &sets);
+        let surface_sets: Vec<Arc<PointSet>> = (scene.objects.iter().zip(&sets))
+            .map(|(object, set)| volumes::surface_points(object, set))
+            .collect::<Result<_, _>>()?;
+        let surface_world = in_world(scene, &surface_sets);
+        let object_points: Vec<ObjectPoints<'_>> = surface_world
             .iter()
-            .zip(&sets)
-            .map(|(object, set)| set.positions.iter().map(|&p| object.transform.apply(p)).collect())
-            .collect();
-        let object_points: Vec<ObjectPoints<'_>> = world
-            .iter()
-            .zip(&sets)
+            .zip(&surface_sets)
             .map(|(positions, set)| ObjectPoints { positions, file_index: &set.file_index })
             .collect();
-        let cloud = Cloud::new(&object_points)?;
+        let bounds = bounds_of(&world).ok_or(CloudError::Empty)?;
+        let cloud = Cloud::within(bounds, &object_points)?;
+        let volumes = volumes::plan_volumes(scene, &sets, &world, cloud.origin)?;
         let fits = scene
             .objects
             .iter()
@@ -232,7 +252,7 @@ impl Plan {
             .map(|(object, index)| fit_params(object, index, &cloud))
             .collect();
         let mut list = ImageList::new();
-        let (objects, colors) = object_infos(scene, &sets, &cloud, images, &mut list)?;
+        let (objects, colors) = object_infos(scene, &surface_sets, &cloud, images, &mut list)?;
         let environment = match &scene.background.environment {
             Some(file) => {
                 add_image(&mut list, images.environment.as_ref(), file, Use::Environment)?
@@ -250,6 +270,7 @@ impl Plan {
             grid_resolution: scene.render.grid_resolution,
             cells_per_pass: scene.render.cells_per_pass,
             primary: scene.render.primary,
+            volumes,
             camera_media: inside::media_of_eye(scene, &sets, &world, camera.eye),
             samples: scene.image.samples,
             filter: filter::steps(scene.image.filter, scene.image.filter_width),
@@ -316,6 +337,8 @@ impl Plan {
             crossings: 0,
             media_count: self.camera_media.len() as u32,
             media,
+            emitted: [0.0; 3],
+            coverage: 0.0,
         }
     }
 
@@ -406,6 +429,23 @@ pub fn checked_crop(crop: Option<Window>, image: [u32; 2]) -> Result<Window, Pla
             && crop.origin[axis].checked_add(crop.size[axis]).is_some_and(|end| end <= image[axis])
     });
     if inside { Ok(crop) } else { Err(PlanError::Crop { crop, image }) }
+}
+
+/// The points of each object in the world.
+fn in_world(scene: &Scene, sets: &[Arc<PointSet>]) -> Vec<Vec<[f64; 3]>> {
+    let placed = |(object, set): (&Object, &Arc<PointSet>)| {
+        set.positions.iter().map(|&p| object.transform.apply(p)).collect()
+    };
+    scene.objects.iter().zip(sets).map(placed).collect()
+}
+
+/// The box around all points.
+fn bounds_of(world: &[Vec<[f64; 3]>]) -> Option<[[f64; 3]; 2]> {
+    let mut all = world.iter().flatten();
+    let &first = all.next()?;
+    Some(all.fold([first; 2], |[low, high], p| {
+        [[0, 1, 2].map(|i| low[i].min(p[i])), [0, 1, 2].map(|i| high[i].max(p[i]))]
+    }))
 }
 
 /// The sets without the points that their objects drop, and how many those are.

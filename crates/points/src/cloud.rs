@@ -85,12 +85,20 @@ impl Cloud {
     /// # Errors
     /// Too many points, none, or points farther apart than f32 bears.
     pub fn new(objects: &[ObjectPoints<'_>]) -> Result<Self, CloudError> {
+        let bounds = world_bounds(objects).ok_or(CloudError::Empty)?;
+        Self::within(bounds, objects)
+    }
+
+    /// The same in a scene that reaches farther than these points: its box is given.
+    ///
+    /// # Errors
+    /// As [`Cloud::new`], but for a scene without points here.
+    pub fn within(bounds: [[f64; 3]; 2], objects: &[ObjectPoints<'_>]) -> Result<Self, CloudError> {
         let count: usize = objects.iter().map(|object| object.positions.len()).sum();
         let limit = u32::MAX / 4;
         if count > limit as usize {
             return Err(CloudError::TooMany { count, limit });
         }
-        let bounds = world_bounds(objects).ok_or(CloudError::Empty)?;
         let origin = [0, 1, 2].map(|axis| middle(bounds[0][axis], bounds[1][axis]));
         let mut cloud = Self {
             points: Vec::with_capacity(count),

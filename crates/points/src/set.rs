@@ -70,6 +70,32 @@ impl PointSet {
         self.attributes.iter().find(|attribute| attribute.name == name).map(|found| &found.values)
     }
 
+    /// The points that are to be kept, by their place in this set.
+    #[must_use]
+    pub fn filtered(&self, keep: impl Fn(usize) -> bool) -> Self {
+        fn kept<T: Copy>(values: &[T], keep: &dyn Fn(usize) -> bool) -> Vec<T> {
+            (0..).zip(values).filter_map(|(i, &value)| keep(i).then_some(value)).collect()
+        }
+        let keep: &dyn Fn(usize) -> bool = &keep;
+        let attributes = self.attributes.iter().map(|attribute| Attribute {
+            name: attribute.name.clone(),
+            values: match &attribute.values {
+                Values::F32(values) => Values::F32(kept(values, keep)),
+                Values::F64(values) => Values::F64(kept(values, keep)),
+            },
+        });
+        Self {
+            positions: kept(&self.positions, keep),
+            file_index: kept(&self.file_index, keep),
+            colors: self.colors.as_ref().map(|colors| kept(colors, keep)),
+            color_encoding: self.color_encoding,
+            normals: self.normals.as_ref().map(|normals| kept(normals, keep)),
+            attributes: attributes.collect(),
+            non_finite: self.non_finite,
+            format: self.format.clone(),
+        }
+    }
+
     /// Smallest and largest coordinate along each axis; `None` without points.
     pub fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
         let (&first, rest) = self.positions.split_first()?;

@@ -9,10 +9,13 @@ const PARALLEL: f64 = 1e-20;
 /// The grid's place and size, in either precision.
 #[derive(Debug, Clone, Copy)]
 pub struct Grid<R> {
-    origin: V3<R>,
+    /// Lowest corner.
+    pub origin: V3<R>,
     edge: R,
-    resolution: [u32; 3],
-    inverse_edge: R,
+    /// Cells along each axis.
+    pub resolution: [u32; 3],
+    /// 1 / edge of a cell.
+    pub inverse_edge: R,
 }
 
 impl<R: Real> From<&GridInfo> for Grid<R> {
@@ -106,9 +109,9 @@ impl<R: Real> Grid<R> {
         }))
     }
 
-    /// The first cell of a ray that starts anywhere, or `NONE` where it misses the grid.
+    /// Where a ray is within the grid's box: the first over the second, nowhere.
     #[must_use]
-    pub fn enter(&self, o: V3<R>, d: V3<R>) -> u32 {
+    pub fn within_box(&self, o: V3<R>, d: V3<R>) -> [R; 2] {
         let (mut near, mut far) = (R::of(0.0), R::of(NO_HIT));
         for axis in 0..3 {
             let (o, d) = (o.0[axis], d.0[axis]);
@@ -122,6 +125,13 @@ impl<R: Real> Grid<R> {
                 (near, far) = (R::of(NO_HIT), R::of(-NO_HIT));
             }
         }
+        [near, far]
+    }
+
+    /// The first cell of a ray that starts anywhere, or `NONE` where it misses the grid.
+    #[must_use]
+    pub fn enter(&self, o: V3<R>, d: V3<R>) -> u32 {
+        let [near, far] = self.within_box(o, d);
         if near > far { NONE } else { self.cell_id(self.cell_of(o + d.times(near))) }
     }
 

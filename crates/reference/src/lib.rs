@@ -33,6 +33,7 @@ pub mod rim;
 pub mod sampler;
 pub mod shade;
 pub mod surface_hit;
+pub mod volume;
 mod wave;
 
 use accumulate::accumulate;

@@ -44,6 +44,12 @@ impl Media {
         others.reduce(|best, member| if outranks(member, best, objects) { member } else { best })
     }
 
+    /// Whether the ray is inside of an object.
+    #[must_use]
+    pub fn contains(&self, object: u32) -> bool {
+        self.0.contains(&object)
+    }
+
     /// The medium that the ray is in.
     #[must_use]
     pub fn medium(&self, objects: &[ObjectInfo]) -> Option<u32> {

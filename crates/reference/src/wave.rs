@@ -17,6 +17,7 @@ use crate::real::{NO_HIT, Real, V3};
 use crate::sampler::sample_1d;
 use crate::shade::{lambert, place_on_light, shadow_ray};
 use crate::surface_hit::Hit;
+use crate::volume::{March, march};
 use kernels::layout::{
     CHANNELS_ALL, FilmPixel, MATERIAL_DIFFUSE, MATERIAL_GLASS, MOST_CROSSINGS, NONE,
     SAMPLE_FRESNEL, WaveParams,
@@ -31,6 +32,10 @@ struct Path<R> {
     bounces: u32,
     crossings: u32,
     media: Media,
+    /// What volumes on its way have sent to the pixel.
+    emitted: V3<R>,
+    /// Of the volumes on the way from the camera.
+    coverage: R,
 }
 
 /// One pixel while its rays are followed.
@@ -55,6 +60,8 @@ impl<R: Real> PixelTrace<'_, R> {
             bounces: 0,
             crossings: 0,
             media: Media::of(&self.plan.camera_media),
+            emitted: V3::splat(R::of(0.0)),
+            coverage: R::of(0.0),
         };
         let mut rays = vec![(ray, path)];
         let mut discs = discs;
@@ -116,6 +123,12 @@ impl<R: Real> PixelTrace<'_, R> {
         from_camera: bool,
         rays: &mut Vec<(Ray<R>, Path<R>)>,
     ) {
+        let end = hit.as_ref().map_or(R::of(NO_HIT), |(hit, _)| hit.t);
+        if let Some(march) = self.march(ray, end, &path.media) {
+            path.emitted = path.emitted + path.throughput * march.color;
+            path.throughput = path.throughput.times(march.transmittance);
+            path.coverage = R::of(1.0) - march.transmittance;
+        }
         let objects = &self.plan.objects;
         if !path.media.is_empty() {
             let way = hit.as_ref().map_or(R::of(NO_HIT), |(hit, _)| hit.t);
@@ -123,24 +136,37 @@ impl<R: Real> PixelTrace<'_, R> {
                 path.throughput * transmittance(path.media.medium(objects), way, objects);
         }
         let Some((hit, object)) = hit else {
-            if !(from_camera && self.params.transparent != 0) {
-                self.write(path.channels, path.throughput * self.background(ray.direction));
+            let left_out = from_camera && self.params.transparent != 0;
+            let behind = if left_out {
+                V3::splat(R::of(0.0))
+            } else {
+                path.throughput * self.background(ray.direction)
+            };
+            self.write(path.channels, path.emitted + behind);
+            if from_camera {
+                self.film.color[3] = path.coverage.to_f32();
             }
             return;
         };
         if objects[object as usize].material == MATERIAL_DIFFUSE {
-            let radiance = self.shade(&hit, object, ray.hit_slot);
-            self.write(path.channels, path.throughput * radiance);
+            let radiance = self.shade(&hit, object, ray.hit_slot, &path.media);
+            self.write(path.channels, path.emitted + path.throughput * radiance);
         } else {
             self.scatter(ray, &hit, object, &path, rays);
         }
+    }
+
+    /// What the volumes of the scene do to a ray; `None` where there are none.
+    fn march(&self, ray: &Ray<R>, end: R, media: &Media) -> Option<March<R>> {
+        let volumes = &self.plan.volumes;
+        (!volumes.infos.is_empty()).then(|| march(ray, end, media, volumes))
     }
 
     fn background(&self, direction: V3<R>) -> V3<R> {
         background_at(self.albedos.images, &self.params.background, direction)
     }
 
-    fn shade(&mut self, hit: &Hit<R>, object: u32, slot: u32) -> V3<R> {
+    fn shade(&mut self, hit: &Hit<R>, object: u32, slot: u32, media: &Media) -> V3<R> {
         let mut irradiance = V3::splat(R::of(0.0));
         for (i, light) in (0..).zip(&self.plan.lights) {
             let u = place_on_light(self.params, self.pixel, i);
@@ -151,6 +177,10 @@ impl<R: Real> PixelTrace<'_, R> {
             self.trace(&mut ray, true);
             self.account(&ray, None, 0, false);
             if ray.hit_slot == NONE {
+                let arriving = match self.march(&ray, ray.hit_t, media) {
+                    Some(march) => arriving.times(march.transmittance),
+                    None => arriving,
+                };
                 irradiance = irradiance + arriving;
             }
         }
@@ -206,7 +236,8 @@ impl<R: Real> PixelTrace<'_, R> {
                 }
             };
             if !goes_on {
-                self.write(channels, throughput * self.background(direction));
+                let background = throughput * self.background(direction);
+                self.write(channels, path.emitted + background);
                 continue;
             }
             if reflects {
@@ -220,6 +251,8 @@ impl<R: Real> PixelTrace<'_, R> {
                 bounces: path.bounces + u32::from(!passes),
                 crossings: path.crossings + u32::from(passes),
                 media: if reflects { path.media.clone() } else { path.media.toggled(object) },
+                emitted: path.emitted,
+                coverage: path.coverage,
             };
             rays.push((Ray::new(hit.position, direction, self.grid, ray.hit_slot), next));
         }

@@ -9,14 +9,15 @@ use crate::RenderError;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
     AlbedoIo, CameraRays, Classify, ClassifyIo, DiscTrace, DiscTraceIo, GridTrace, GridTraceIo,
-    Records, Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start,
-    SurfaceHit, SurfaceHitIo,
+    March, MarchIo, Marched, Records, Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo,
+    ShadowRays, ShadowRaysIo, Start, SurfaceHit, SurfaceHitIo,
 };
 use crate::samples::Samples;
 use crate::state::RayState;
+use crate::volumes::VolumeBuffers;
 use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder, Timings};
-use kernels::layout::{FilmPixel, Hit, TraceParams, WaveParams};
+use kernels::layout::{FilmPixel, Hit, MarchParams, TraceParams, WaveParams};
 use plan::{Picture, Plan, Rays, Window, camera_wave};
 use points::Watch;
 use points::device::Scan;
@@ -74,6 +75,7 @@ pub struct Renderer {
     hits: Buffer,
     live: Buffer,
     wave: WaveBuffers,
+    volumes: Option<VolumeBuffers>,
     state: RayState,
     shadows: RayState,
     discs: Discs,
@@ -92,6 +94,7 @@ struct Passes {
     shadow_rays: ShadowRays,
     shade: Shade,
     scatter: Scatter,
+    march: March,
     scan: Scan,
 }
 
@@ -107,6 +110,7 @@ impl Passes {
             shadow_rays: ShadowRays::new(device)?,
             shade: Shade::new(device)?,
             scatter: Scatter::new(device)?,
+            march: March::new(device)?,
             scan: Scan::new(device)?,
         })
     }
@@ -170,6 +174,7 @@ impl Renderer {
             hits: Buffer::new(device, "hits", u64::from(rays) * size_of::<Hit>() as u64)?,
             live: Buffer::new(device, "live rays", 8)?,
             wave: WaveBuffers::new(device, rays, plan.scatters())?,
+            volumes: VolumeBuffers::new(device, &plan.volumes, rays)?,
             state: RayState::new(device, rays)?,
             shadows: RayState::new(device, shadows)?,
             discs: Discs::new(device, plan.cloud.points.len() as u32)?,
@@ -241,6 +246,7 @@ impl Renderer {
             self.trace_to_the_end(plan, params.ray_count, traced, stats, watch)?;
             traced = if traced == Traced::Scattered { traced } else { Traced::Camera };
             self.settle_hits(plan, params.ray_count, traced, stats, watch)?;
+            self.march(plan, params.ray_count, false, stats, watch)?;
             let lit = self.classify(plan, &params, stats)?;
             self.shade(plan, &WaveParams { ray_count: lit, ..params }, stats, watch)?;
             params.ray_count = self.scatter(plan, &params, stats)?;
@@ -400,6 +406,50 @@ impl Renderer {
         Ok(counts)
     }
 
+    /// The way of a wave's rays, or of its shadow rays, through the volumes of the scene, if it has any.
+    fn march(
+        &mut self,
+        plan: &Plan,
+        ray_count: u32,
+        shadows: bool,
+        stats: &mut FrameStats,
+        watch: &dyn Watch,
+    ) -> Result<(), RenderError> {
+        let Some(volumes) = &self.volumes else { return Ok(()) };
+        let io = MarchIo {
+            state: if shadows { &self.shadows.current } else { &self.state.current },
+            volumes,
+            paths: self.wave.paths(),
+            live: &self.live,
+            marched: match shadows {
+                false => Marched::Wave { hits: &self.hits },
+                true => Marched::Shadows {
+                    lit_rays: self.wave.lit_rays(),
+                    light_sums: self.wave.light_sums(),
+                },
+            },
+        };
+        let params = MarchParams {
+            ray_count,
+            volume_count: plan.volumes.infos.len() as u32,
+            step: plan.volumes.step,
+            work: WORK_PER_PASS / 2, // two loops a sample
+        };
+        let bytes = u64::from(ray_count) * size_of::<kernels::layout::March>() as u64;
+        self.recorder.fill(&volumes.marches, 0, bytes, 0);
+        let mut left = [u32::MAX];
+        while left != [0] {
+            if watch.interrupted() {
+                return Err(RenderError::Interrupted);
+            }
+            self.recorder.fill(&self.live, 0, 4, 0);
+            self.passes.march.record(&mut self.recorder, io, &params);
+            stats.add_kernels(&self.recorder.submit()?.passes);
+            self.live.read(0, &mut left)?;
+        }
+        Ok(())
+    }
+
     /// What becomes of each ray of a wave; returns how many hit a diffuse surface.
     fn classify(
         &mut self,
@@ -459,6 +509,7 @@ impl Renderer {
             self.passes.shadow_rays.record(&mut self.recorder, io, &params);
             self.shadows.swap();
             self.trace_to_the_end(plan, params.ray_count, Traced::Shadows, stats, watch)?;
+            self.march(plan, params.ray_count, true, stats, watch)?;
         }
         let io = ShadeIo {
             shadows: &self.shadows.current,

@@ -11,6 +11,7 @@ mod frame;
 mod passes;
 mod samples;
 mod state;
+mod volumes;
 mod wave;
 
 pub use discs::DiscLists;

@@ -403,6 +403,24 @@ pub(crate) fn background_is_one(background: &Reader<'_>) -> Result<(), Fault> {
     }
 }
 
+/// A transfer function's stops ascend in value.
+pub(crate) fn stops_ascend(volume: &Reader<'_>) -> Result<(), Fault> {
+    let values: Vec<f64> = (volume.tables("transfer", &crate::keys::TRANSFER).iter())
+        .map(|stop| stop.number("value"))
+        .collect();
+    match values.windows(2).find(|pair| pair[0] > pair[1]) {
+        Some(pair) => Err((
+            "transfer",
+            format!(
+                "found the value {} behind {}, expected stops that ascend; sort them",
+                plain(pair[1]),
+                plain(pair[0])
+            ),
+        )),
+        None => Ok(()),
+    }
+}
+
 /// A material has an albedo or a texture, and what belongs to one of them only with that.
 pub(crate) fn material_has_one_color(material: &Reader<'_>) -> Result<(), Fault> {
     let has = |name: &str| material.written(name).is_some();

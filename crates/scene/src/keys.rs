@@ -5,6 +5,7 @@
 
 use crate::check::{
     background_is_one, camera_has_a_view, direction_has_a_length, material_has_one_color,
+    stops_ascend,
 };
 use crate::read::Reader;
 
@@ -577,7 +578,7 @@ const AUTO_LENGTH: Kind = Kind::Either(&[Kind::Choice(&["auto"]), LENGTH]);
 pub(crate) static VOLUME: Table = Table {
     header: "[objects.volume]",
     doc: "A volume made of the points. Left out, the object is a pure surface.",
-    whole: None,
+    whole: Some(stops_ascend),
     keys: &[
         key(
             "scalar",
@@ -585,7 +586,13 @@ pub(crate) static VOLUME: Table = Table {
             Required("\"density\""),
             "The points' attribute that is shown.",
         ),
-        key("kernel", Kind::Choice(&["shepard"]), Value("\"shepard\""), "How points are blended."),
+        key(
+            "kernel",
+            Kind::Choice(&["shepard", "sum"]),
+            Value("\"shepard\""),
+            "How points are blended: by the weighted mean of those in reach, as in the paper, or by the \
+             weighted sum.",
+        ),
         key("radius", AUTO_LENGTH, Value("\"auto\""), "Reach of a point."),
         key(
             "smoothing",
@@ -601,7 +608,9 @@ pub(crate) static VOLUME: Table = Table {
             "boundary",
             Kind::Text("the name of an attribute, or \"all\", \"none\", \"auto\""),
             Value("\"none\""),
-            "The attribute that is non-zero on boundary points.",
+            "Which points carry the object's surface: those whose attribute of this name is not zero, \
+             `all`, `none`, or, with `auto`, those with no neighbour on one side. The volume then counts \
+             inside that surface alone, where `material.kind` is `glass`.",
         ),
         key(
             "transfer",

@@ -26,9 +26,9 @@ mod tests;
 
 pub use error::SceneError;
 pub use scene::{
-    Albedo, Background, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile, ImageSettings,
-    Light, Material, MaterialKind, Normals, Object, Polynomial, Primary, Projection, RayLoop,
-    Refine, RenderSettings, Scene, Surface, TextureAxis, Up,
+    Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
+    ImageSettings, Light, Material, MaterialKind, Normals, Object, Polynomial, Primary, Projection,
+    RayLoop, Refine, RenderSettings, Scene, Stop, Surface, TextureAxis, Up, Volume, VolumeKernel,
 };
 pub use schema::json_schema;
 pub use transform::Transform;

@@ -5,9 +5,10 @@ use crate::error::{Problem, Source};
 use crate::keys::{self, SCENE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
-    Albedo, Background, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile, ImageSettings,
-    Light, Material, MaterialKind, Normals, Object, Polynomial, Primary, Projection, RayLoop,
-    Refine, RenderSettings, Scene, SceneError, Surface, TextureAxis, Transform, Up,
+    Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
+    ImageSettings, Light, Material, MaterialKind, Normals, Object, Polynomial, Primary, Projection,
+    RayLoop, Refine, RenderSettings, Scene, SceneError, Stop, Surface, TextureAxis, Transform, Up,
+    Volume, VolumeKernel,
 };
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -299,6 +300,39 @@ impl Object {
             transform: Transform::read(&table.table("transform", &keys::TRANSFORM)),
             surface: Surface::read(&table.table("surface", &keys::SURFACE)),
             material: Material::read(&table.table("material", &keys::MATERIAL), folder),
+            volume: (table.written("volume"))
+                .map(|_| Volume::read(&table.table("volume", &keys::VOLUME))),
+        }
+    }
+}
+
+impl Volume {
+    fn read(table: &Reader<'_>) -> Self {
+        let length = |name: &str| to_number(&table.value(name));
+        let stops = table.tables("transfer", &keys::TRANSFER);
+        Self {
+            scalar: table.text("scalar"),
+            kernel: match table.text("kernel").as_str() {
+                "sum" => VolumeKernel::Sum,
+                _ => VolumeKernel::Shepard,
+            },
+            radius: length("radius"),
+            smoothing: length("smoothing"),
+            step: length("step"),
+            boundary: match table.text("boundary").as_str() {
+                "none" => Boundary::None,
+                "all" => Boundary::All,
+                "auto" => Boundary::Auto,
+                name => Boundary::Attribute(name.to_owned()),
+            },
+            transfer: stops
+                .iter()
+                .map(|stop| Stop {
+                    value: stop.number("value"),
+                    color: stop.vector("color"),
+                    extinction: stop.number("extinction"),
+                })
+                .collect(),
         }
     }
 }

@@ -187,6 +187,60 @@ pub struct Object {
     pub surface: Surface,
     /// How the surface scatters light.
     pub material: Material,
+    /// A volume made of the points; `None`: the object is a pure surface.
+    pub volume: Option<Volume>,
+}
+
+/// A volume made of an object's points (docs/method.md, section 7). Lengths are scene units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Volume {
+    /// The points' attribute that is shown.
+    pub scalar: String,
+    /// How points are blended.
+    pub kernel: VolumeKernel,
+    /// Reach of a point, 1e-12 to 1e15; `None`: from the points' spacing.
+    pub radius: Option<f64>,
+    /// ρ of the weights exp(−d²/2ρ), a length squared; `None`: (radius/2)².
+    pub smoothing: Option<f64>,
+    /// Distance of the samples along a ray; `None`: radius/4.
+    pub step: Option<f64>,
+    /// Which points carry the object's surface.
+    pub boundary: Boundary,
+    /// At least one, ascending in value.
+    pub transfer: Vec<Stop>,
+}
+
+/// How a volume's points are blended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VolumeKernel {
+    /// The weighted mean (Eq. 3 of the paper).
+    Shepard,
+    /// The weighted sum.
+    Sum,
+}
+
+/// Which points of a volume carry its surface.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Boundary {
+    /// None: the volume counts wherever points are in reach.
+    None,
+    /// All of them.
+    All,
+    /// Those with no neighbour on one side.
+    Auto,
+    /// Those whose attribute of this name is not zero.
+    Attribute(String),
+}
+
+/// A stop of a transfer function.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// The scalar.
+    pub value: f64,
+    /// Emitted colour, linear RGB.
+    pub color: [f64; 3],
+    /// σ, per scene unit.
+    pub extinction: f64,
 }
 
 /// How the surface is fitted (docs/method.md, section 1).

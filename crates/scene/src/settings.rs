@@ -1,8 +1,9 @@
 //! A scene as canonical TOML, for the header of the pictures it makes.
 
 use crate::{
-    Albedo, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Normals, Object,
-    Polynomial, Projection, Refine, RenderSettings, Scene, Surface, TextureAxis,
+    Albedo, Boundary, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Normals, Object,
+    Polynomial, Projection, Refine, RenderSettings, Scene, Surface, TextureAxis, Volume,
+    VolumeKernel,
 };
 use std::fmt::{self, Write};
 
@@ -107,7 +108,39 @@ fn write_object(out: &mut String, object: &Object) -> fmt::Result {
     writeln!(out, "rotate = {:?}", object.transform.rotate)?;
     writeln!(out, "translate = {:?}", object.transform.translate)?;
     write_surface(out, &object.surface)?;
-    write_material(out, &object.material)
+    write_material(out, &object.material)?;
+    match &object.volume {
+        Some(volume) => write_volume(out, volume),
+        None => Ok(()),
+    }
+}
+
+fn write_volume(out: &mut String, volume: &Volume) -> fmt::Result {
+    let auto = |length: Option<f64>| length.map_or("\"auto\"".into(), |x| format!("{x:?}"));
+    let kernel = match volume.kernel {
+        VolumeKernel::Shepard => "shepard",
+        VolumeKernel::Sum => "sum",
+    };
+    let boundary = match &volume.boundary {
+        Boundary::None => "none",
+        Boundary::All => "all",
+        Boundary::Auto => "auto",
+        Boundary::Attribute(name) => name,
+    };
+    writeln!(out, "\n[objects.volume]")?;
+    writeln!(out, "scalar = {}", quoted(&volume.scalar))?;
+    writeln!(out, "kernel = \"{kernel}\"")?;
+    writeln!(out, "radius = {}", auto(volume.radius))?;
+    writeln!(out, "smoothing = {}", auto(volume.smoothing))?;
+    writeln!(out, "step = {}", auto(volume.step))?;
+    writeln!(out, "boundary = {}", quoted(boundary))?;
+    for stop in &volume.transfer {
+        writeln!(out, "\n[[objects.volume.transfer]]")?;
+        writeln!(out, "value = {:?}", stop.value)?;
+        writeln!(out, "color = {:?}", stop.color)?;
+        writeln!(out, "extinction = {:?}", stop.extinction)?;
+    }
+    Ok(())
 }
 
 fn write_material(out: &mut String, material: &Material) -> fmt::Result {

@@ -1,0 +1,299 @@
+//! Volumes: which points carry a surface, and the grid in which a sample finds the points in its reach
+//! (\[T\] §6; docs/method.md, section 7).
+
+use crate::PlanError;
+use kernels::layout::{
+    GridInfo, Point, VOLUME_SHEPARD, VOLUME_SUM, VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
+};
+use points::{Cloud, NeighborSearch, ObjectPoints, PointSet};
+use scene::{Boundary, Object, Scene, Volume, VolumeKernel};
+use std::sync::Arc;
+
+/// Neighbours that the spacing of a volume's points is measured by, and their boundary.
+const NEIGHBORS: usize = 16;
+/// A point has no neighbour on one side where none lies farther that way than this share of the farthest.
+const ONE_SIDE: f64 = 0.2;
+/// Cells along the longest axis: more cost more memory than they save samples.
+const MOST_CELLS: f64 = 160.0;
+
+/// All volumes of a scene, as plain data.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Volumes {
+    /// In the order of their objects.
+    pub infos: Vec<VolumeInfo>,
+    /// Cells of each volume, with one behind the last.
+    pub cells: Vec<VolumeCell>,
+    /// Points of each volume by cell, in the order of the file within one.
+    pub points: Vec<VolumePoint>,
+    /// Of all transfer functions.
+    pub stops: Vec<VolumeStop>,
+    /// Distance of the samples along a ray: the shortest that a volume asks for.
+    pub step: f32,
+}
+
+/// The points of an object that carry its surface.
+pub(crate) fn surface_points(
+    object: &Object,
+    set: &Arc<PointSet>,
+) -> Result<Arc<PointSet>, PlanError> {
+    let Some(volume) = &object.volume else { return Ok(Arc::clone(set)) };
+    Ok(match &volume.boundary {
+        Boundary::All => Arc::clone(set),
+        Boundary::None => Arc::new(set.filtered(|_| false)),
+        Boundary::Auto => {
+            let open = open_points(set)?;
+            Arc::new(set.filtered(|i| open[i]))
+        }
+        Boundary::Attribute(name) => {
+            let values = attribute(object, set, name)?;
+            Arc::new(set.filtered(|i| values[i] != 0.0 && !values[i].is_nan()))
+        }
+    })
+}
+
+/// The values of an attribute, or of a coordinate.
+fn attribute(object: &Object, set: &PointSet, name: &str) -> Result<Vec<f64>, PlanError> {
+    let axis = ["x", "y", "z"].iter().position(|axis| *axis == name);
+    match (set.attribute(name), axis) {
+        (Some(values), _) => Ok(values.iter().collect()),
+        (None, Some(axis)) => Ok(set.positions.iter().map(|p| p[axis]).collect()),
+        (None, None) => {
+            let known = set.attributes.iter().map(|attribute| attribute.name.as_str());
+            Err(PlanError::NoVolumeAttribute {
+                name: object.name.clone(),
+                attribute: name.to_owned(),
+                file: object.points.display().to_string(),
+                known: known.chain(["x", "y", "z"]).collect::<Vec<_>>().join(", "),
+            })
+        }
+    }
+}
+
+/// Vectors from each point to its nearest others, in the order of the set.
+fn neighborhoods(positions: &[[f64; 3]]) -> Result<Vec<Vec<[f64; 3]>>, PlanError> {
+    let file_index: Vec<u32> = (0..positions.len() as u32).collect();
+    let cloud = Cloud::new(&[ObjectPoints { positions, file_index: &file_index }])?;
+    let count = cloud.points.len();
+    let k = NEIGHBORS.min(count.saturating_sub(1)).max(1);
+    let lists = NeighborSearch::new(&cloud.points, 0).nearest(0..count, k);
+    let around = |&slot: &u32| {
+        let at = cloud.points[slot as usize].position;
+        let of = |other: &Point| [0, 1, 2].map(|i| f64::from(other.position[i] - at[i]));
+        lists[slot as usize * k..(slot as usize + 1) * k]
+            .iter()
+            .filter_map(|&other| cloud.points.get(other as usize))
+            .map(of)
+            .collect()
+    };
+    Ok(cloud.order.iter().map(around).collect())
+}
+
+fn length(v: [f64; 3]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Which points have no neighbour on one side: away from the mean of all.
+fn open_points(set: &PointSet) -> Result<Vec<bool>, PlanError> {
+    let is_open = |others: Vec<[f64; 3]>| {
+        let mean = [0, 1, 2].map(|axis| others.iter().map(|y| y[axis]).sum::<f64>());
+        let far = others.iter().map(|&y| length(y)).fold(0.0, f64::max);
+        let side = length(mean);
+        side > 0.0
+            && others.iter().all(|y| {
+                let away = -(0..3).map(|axis| y[axis] * mean[axis]).sum::<f64>() / side;
+                away <= ONE_SIDE * far
+            })
+    };
+    Ok(neighborhoods(&set.positions)?.into_iter().map(is_open).collect())
+}
+
+/// The mean distance to the 16th neighbour.
+fn spacing(positions: &[[f64; 3]]) -> Result<f64, PlanError> {
+    let farthest = |others: &Vec<[f64; 3]>| others.iter().map(|&y| length(y)).fold(0.0, f64::max);
+    let all = neighborhoods(positions)?;
+    Ok(all.iter().map(farthest).sum::<f64>() / all.len().max(1) as f64)
+}
+
+/// Lists the points of every volume. `world` has the points of each object in the world.
+pub(crate) fn plan_volumes(
+    scene: &Scene,
+    sets: &[Arc<PointSet>],
+    world: &[Vec<[f64; 3]>],
+    origin: [f64; 3],
+) -> Result<Volumes, PlanError> {
+    let mut volumes = Volumes { step: f32::MAX, ..Volumes::default() };
+    for (index, object) in scene.objects.iter().enumerate() {
+        let Some(volume) = &object.volume else { continue };
+        let scalars = attribute(object, &sets[index], &volume.scalar)?;
+        let positions = &world[index];
+        let radius = match volume.radius {
+            Some(radius) => radius,
+            None => spacing(positions)?,
+        };
+        // Points that all lie in one place have no spacing, and any reach shows them alike.
+        let radius = if radius > 0.0 { radius } else { 1.0 };
+        let points: Vec<VolumePoint> = positions
+            .iter()
+            .zip(&scalars)
+            .filter(|(_, scalar)| (**scalar as f32).is_finite())
+            .map(|(p, &scalar)| VolumePoint {
+                position: [0, 1, 2].map(|axis| (p[axis] - origin[axis]) as f32),
+                scalar: scalar as f32,
+            })
+            .collect();
+        volumes.add(index as u32, volume, radius as f32, points)?;
+    }
+    Ok(volumes)
+}
+
+impl Volumes {
+    fn add(
+        &mut self,
+        object: u32,
+        volume: &Volume,
+        radius: f32,
+        points: Vec<VolumePoint>,
+    ) -> Result<(), PlanError> {
+        let smoothing = volume.smoothing.map_or(0.25 * radius * radius, |rho| rho as f32);
+        self.step = self.step.min(volume.step.map_or(0.25 * radius, |step| step as f32));
+        let grid = grid_over(&points, radius);
+        let (first_cell, first_stop) = (self.cells.len() as u32, self.stops.len() as u32);
+        self.stops.extend(volume.transfer.iter().map(|stop| VolumeStop {
+            color: stop.color.map(|c| c as f32),
+            extinction: stop.extinction as f32,
+            value: stop.value as f32,
+            pad: [0; 3],
+        }));
+        let kernel = match volume.kernel {
+            VolumeKernel::Shepard => VOLUME_SHEPARD,
+            VolumeKernel::Sum => VOLUME_SUM,
+        };
+        let info = VolumeInfo {
+            grid,
+            first_cell,
+            first_stop,
+            stop_count: volume.transfer.len() as u32,
+            kernel,
+            square_radius: radius * radius,
+            inverse_width: 1.0 / (2.0 * smoothing),
+            object,
+            bounded: u32::from(volume.boundary != Boundary::None),
+            pad: [0; 4],
+        };
+        self.list(&info, points);
+        self.infos.push(info);
+        Ok(())
+    }
+
+    /// Counts, adds up and scatters the points, in their order, and says which cells may show anything.
+    fn list(&mut self, info: &VolumeInfo, points: Vec<VolumePoint>) {
+        let grid = &info.grid;
+        let base = self.points.len();
+        let cell_of: Vec<usize> = points.iter().map(|p| cell_of(grid, p.position)).collect();
+        let cells = grid.cell_count() as usize;
+        let mut first = vec![0u32; cells + 1];
+        for &cell in &cell_of {
+            first[cell + 1] += 1;
+        }
+        for cell in 0..cells {
+            first[cell + 1] += first[cell];
+        }
+        let mut next = first.clone();
+        self.points.resize(base + points.len(), VolumePoint { position: [0.0; 3], scalar: 0.0 });
+        for (point, &cell) in points.iter().zip(&cell_of) {
+            self.points[base + next[cell] as usize] = *point;
+            next[cell] += 1;
+        }
+        let seen = self.cells_seen(info, &points, &cell_of);
+        self.cells.extend(
+            first
+                .iter()
+                .enumerate()
+                .map(|(cell, &at)| VolumeCell { first: base as u32 + at, counts: seen[cell] }),
+        );
+    }
+
+    /// 1 for each cell from which a point in reach may be seen: there are points in the cells around, and
+    /// some value that they can have together has an extinction.
+    fn cells_seen(&self, info: &VolumeInfo, points: &[VolumePoint], cell_of: &[usize]) -> Vec<u32> {
+        let [nx, ny, nz] = info.grid.resolution.map(|n| n as usize);
+        let none = (f32::INFINITY, f32::NEG_INFINITY, 0u32);
+        let mut ranges = vec![none; nx * ny * nz];
+        let merge =
+            |a: (f32, f32, u32), b: (f32, f32, u32)| (a.0.min(b.0), a.1.max(b.1), a.2 + b.2);
+        for (point, &cell) in points.iter().zip(cell_of) {
+            ranges[cell] = merge(ranges[cell], (point.scalar, point.scalar, 1));
+        }
+        let reach = (info.square_radius.sqrt() * info.grid.inverse_edge).ceil() as usize + 1;
+        // The box around a cell, one axis after the other.
+        for (stride, count) in [(1, nx), (nx, ny), (nx * ny, nz)] {
+            let before = ranges.clone();
+            for (at, range) in ranges.iter_mut().enumerate() {
+                let place = at / stride % count;
+                let (low, high) = (place.saturating_sub(reach), (place + reach).min(count - 1));
+                *range = (low..=high)
+                    .map(|other| before[at + other * stride - place * stride])
+                    .fold(none, merge);
+            }
+        }
+        let seen = |(low, high, count): (f32, f32, u32)| {
+            let (low, high) = match info.kernel {
+                VOLUME_SUM => ((low * count as f32).min(0.0), (high * count as f32).max(0.0)),
+                _ => (low, high),
+            };
+            count > 0 && self.has_extinction(info, low, high)
+        };
+        ranges.into_iter().map(|range| u32::from(seen(range))).chain([0]).collect()
+    }
+
+    /// Whether the transfer function is above zero anywhere from `low` to `high`, and a rounding farther.
+    fn has_extinction(&self, info: &VolumeInfo, low: f32, high: f32) -> bool {
+        let margin = 1e-5 * low.abs().max(high.abs());
+        let (low, high) = (low - margin, high + margin);
+        let first = info.first_stop as usize;
+        let stops = &self.stops[first..first + info.stop_count as usize];
+        let inside = stops.iter().any(|s| s.extinction > 0.0 && s.value >= low && s.value <= high);
+        // Linear between stops: only its ends, and what the outer stops mean beyond them.
+        let pieces = stops.windows(2).any(|pair| {
+            pair[0].value <= high
+                && pair[1].value >= low
+                && (pair[0].extinction > 0.0 && pair[1].value > low
+                    || pair[1].extinction > 0.0 && pair[0].value < high)
+        });
+        let (Some(least), Some(last)) = (stops.first(), stops.last()) else { return false };
+        inside
+            || pieces
+            || (low <= least.value && least.extinction > 0.0)
+            || (high >= last.value && last.extinction > 0.0)
+    }
+}
+
+/// Cells of an edge of the radius, over the points' bounding box grown by it.
+fn grid_over(points: &[VolumePoint], radius: f32) -> GridInfo {
+    let along = |axis: usize| points.iter().map(move |p| p.position[axis]);
+    let (mut low, mut extent) = ([0.0; 3], [0.0f64; 3]);
+    for axis in 0..3 {
+        let least = along(axis).fold(f32::INFINITY, f32::min);
+        let most = along(axis).fold(f32::NEG_INFINITY, f32::max);
+        if least <= most {
+            low[axis] = least - radius;
+            extent[axis] = f64::from(most) - f64::from(least) + 2.0 * f64::from(radius);
+        }
+    }
+    let longest = extent.iter().copied().fold(0.0, f64::max);
+    let edge = f64::from(radius).max(longest / MOST_CELLS);
+    GridInfo {
+        origin: low,
+        edge: edge as f32,
+        resolution: extent.map(|length| (length * 1.000_01 / edge).ceil().max(1.0) as u32),
+        inverse_edge: 1.0 / edge as f32,
+    }
+}
+
+fn cell_of(grid: &GridInfo, position: [f32; 3]) -> usize {
+    let at = [0, 1, 2].map(|axis| {
+        let cell = ((position[axis] - grid.origin[axis]) * grid.inverse_edge).floor();
+        (cell.max(0.0) as usize).min(grid.resolution[axis] as usize - 1)
+    });
+    at[0] + grid.resolution[0] as usize * (at[1] + grid.resolution[1] as usize * at[2])
+}

@@ -1,0 +1,88 @@
+//! The pass `march`.
+
+use super::{bind_state, line, state_bindings};
+use crate::state::StateImages;
+use crate::volumes::VolumeBuffers;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use kernels::layout::{
+    MARCH_CELLS, MARCH_POINTS, MARCH_STATE, MARCH_STOPS, MARCH_VOLUMES, MarchParams, STATE_IN,
+    TRACE_HITS, TRACE_LIVE, WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS,
+};
+use kernels::spirv;
+use std::sync::Arc;
+
+/// Whose way is marched.
+#[derive(Clone, Copy)]
+pub(crate) enum Marched<'a> {
+    /// The rays of a wave, as far as their hits.
+    Wave { hits: &'a Buffer },
+    /// Shadow rays, as far as their lights.
+    Shadows { lit_rays: &'a Buffer, light_sums: &'a Buffer },
+}
+
+/// What the pass works on.
+#[derive(Clone, Copy)]
+pub(crate) struct MarchIo<'a> {
+    pub state: &'a StateImages,
+    pub volumes: &'a VolumeBuffers,
+    pub paths: &'a Buffer,
+    /// One u32, zero before: how many rays are not done.
+    pub live: &'a Buffer,
+    pub marched: Marched<'a>,
+}
+
+/// Rays through volumes, sample after sample (\[T\] §6).
+pub(crate) struct March {
+    wave: Kernel,
+    shadows: Kernel,
+}
+
+impl March {
+    pub const NAME: &'static str = "march";
+
+    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+        let params = size_of::<MarchParams>();
+        let kernel = |module: &[u32], more: &[u32]| {
+            let mut bindings = state_bindings(STATE_IN).to_vec();
+            let buffers = [
+                TRACE_LIVE,
+                WAVE_PATHS,
+                MARCH_VOLUMES,
+                MARCH_CELLS,
+                MARCH_POINTS,
+                MARCH_STOPS,
+                MARCH_STATE,
+            ];
+            let all = buffers.iter().chain(more);
+            bindings.extend(all.map(|&binding| (binding, Binding::StorageBuffer)));
+            Kernel::new(device, Self::NAME, module, &bindings, params)
+        };
+        Ok(Self {
+            wave: kernel(&spirv::march(), &[TRACE_HITS])?,
+            shadows: kernel(&spirv::march_shadows(), &[WAVE_LIT_RAYS, WAVE_LIGHT_SUMS])?,
+        })
+    }
+
+    /// Records one pass.
+    pub fn record(&self, rec: &mut Recorder, io: MarchIo<'_>, params: &MarchParams) {
+        let kernel = match io.marched {
+            Marched::Wave { .. } => &self.wave,
+            Marched::Shadows { .. } => &self.shadows,
+        };
+        let pass = bind_state(rec.pass(Self::NAME, kernel), STATE_IN, io.state)
+            .buffer(TRACE_LIVE, io.live)
+            .buffer(WAVE_PATHS, io.paths)
+            .buffer(MARCH_VOLUMES, &io.volumes.infos)
+            .buffer(MARCH_CELLS, &io.volumes.cells)
+            .buffer(MARCH_POINTS, &io.volumes.points)
+            .buffer(MARCH_STOPS, &io.volumes.stops)
+            .buffer(MARCH_STATE, &io.volumes.marches);
+        let pass = match io.marched {
+            Marched::Wave { hits } => pass.buffer(TRACE_HITS, hits),
+            Marched::Shadows { lit_rays, light_sums } => {
+                pass.buffer(WAVE_LIT_RAYS, lit_rays).buffer(WAVE_LIGHT_SUMS, light_sums)
+            }
+        };
+        pass.push(params).dispatch(line(params.ray_count));
+    }
+}

@@ -1,0 +1,169 @@
+// march: rays through volumes, sample after sample, as far as the surface that they met (section 6 of the
+// paper).
+//
+// reads   the ray state, hits      where each ray begins and ends
+//         volumes, their cells, points and stops
+// writes  march            where each ray goes on in the next pass
+//         paths            what the volumes emit towards the camera, and what they leave of the throughput
+//         live             how many rays are not done
+// runs    one invocation per ray of the wave; dispatched until none lives
+// twin    crates/reference/src/volume.rs
+//
+// With SHADOWS, rays towards a light: what is left of its light goes to light_sums.
+//
+// Samples lie at the midpoints of steps that are counted from where the ray enters the first volume, or
+// from its start where it is inside the surface of one; the last step ends where the ray does, and counts
+// with its own length. Volumes add. A pass can end after any row of cells or any 64 points of one.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define STATE_READS
+#include "layout.glsl"
+#include "math.glsl"
+#include "volume.glsl"
+#include "state.glsl"
+#include "index.glsl"
+
+layout(local_size_x = LINE_GROUP) in;
+layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
+layout(std430, binding = WAVE_PATHS) buffer Paths { Path paths[]; };
+layout(std430, binding = MARCH_STATE) buffer Marches { March marches[]; };
+#ifdef SHADOWS
+layout(std430, binding = WAVE_LIT_RAYS) readonly buffer LitRays { uvec2 lit_rays[]; };
+layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
+#else
+layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
+#endif
+layout(push_constant) uniform Push { MarchParams params; };
+
+#define AT_ONCE 64u // points of a row
+#define FEWEST 1e-30 // transmittance that still counts
+#define MOST_SAMPLES 16777216.0 // floats count no farther
+
+bool is_inside(uint path, uint object) {
+    bool found = false;
+    for (uint i = 0u; i < paths[path].media_count; ++i) {
+        found = found || bitfieldExtract(paths[path].media[i / 2u], 16 * int(i & 1u), 16) == object;
+    }
+    return found;
+}
+
+// Whether a volume counts on this ray at all.
+bool takes_part(VolumeInfo volume, uint path) {
+    return volume.bounded == 0u || is_inside(path, volume.object);
+}
+
+// From where to where the ray passes volumes.
+vec2 way_through(Ray ray, uint path, float end) {
+    vec2 way = vec2(NO_HIT, 0.0);
+    for (uint i = 0u; i < params.volume_count; ++i) {
+        bool bounded = volumes[i].bounded != 0u;
+        vec2 box = within_box(volumes[i].grid, ray.origin, ray.direction);
+        bool counts = takes_part(volumes[i], path) && box.x <= box.y;
+        way.x = counts ? min(way.x, bounded ? 0.0 : box.x) : way.x;
+        way.y = counts ? max(way.y, box.y) : way.y;
+    }
+    way.y = min(way.y, end);
+    return way;
+}
+
+void finish(uint at, uint path, March march) {
+#ifdef SHADOWS
+    light_sums[at].arriving *= march.transmittance;
+#else
+    paths[path].emitted += paths[path].throughput * march.color;
+    paths[path].throughput *= march.transmittance;
+    paths[path].coverage = 1.0 - march.transmittance;
+#endif
+}
+
+void main() {
+    uint at = list_index();
+    if (at >= params.ray_count) return;
+    March march = marches[at];
+#ifdef SHADOWS
+    uint path = lit_rays[at].x;
+    Ray ray = load_ray(at);
+    // Blocked, or never sent: the light brings nothing, however far it would come.
+    bool begins = ray.hit_slot == NONE && any(greaterThan(light_sums[at].arriving, vec3(0.0)));
+    float end = ray.hit_t;
+#else
+    uint path = at;
+    bool begins = paths[at].pixel != NONE;
+    Ray ray = load_ray(at);
+    float end = ray.hit_slot != NONE ? hits[at].t : NO_HIT;
+#endif
+    if (march.state == 2u || !begins) return;
+    if (march.state == 0u) {
+        march.transmittance = 1.0;
+        march.state = 1u;
+    }
+    vec2 way = way_through(ray, path, end);
+    float span = way.y - way.x;
+    uint samples = uint(min(max(-floor(-(span / params.step)), 0.0), MOST_SAMPLES));
+    uint work_left = params.work;
+
+    while (march.place < samples && work_left > 0u) {
+        float begin = float(march.place) * params.step;
+        float length_of_step = min(params.step, span - begin);
+        vec3 x = ray.origin + (way.x + (begin + 0.5 * length_of_step)) * ray.direction;
+        VolumeInfo volume = volumes[march.volume];
+        GridInfo grid = volume.grid;
+        vec3 cells_off = (x - grid.origin) * grid.inverse_edge;
+        bool counts = takes_part(volume, path) && all(greaterThanEqual(cells_off, vec3(0.0)))
+            && all(lessThan(cells_off, vec3(grid.resolution)));
+        uvec3 cell = cell_of(grid, x);
+        counts = counts && volume_cells[volume.first_cell + cell_id(grid, cell)].counts != 0u;
+        float reach = sqrt(volume.square_radius);
+        uvec3 low, high;
+        cells_around(grid, x, reach, low, high);
+        uint rows = counts ? (high.y - low.y + 1u) * (high.z - low.z + 1u) : 0u;
+
+        uint row_left = march.row < rows ? 1u : 0u;
+        uvec2 range = row_left > 0u ? row_points(volume, low, high, march.row) : uvec2(0u);
+        uint first = range.x + march.cursor;
+        uint count = min(range.y - first, AT_ONCE);
+        for (uint i = 0u; i < count; ++i) {
+            VolumePoint point = volume_points[first + i];
+            vec3 y = point.position - x;
+            float square = dot3(y, y);
+            float weight = square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
+            march.numerator += weight * point.scalar;
+            march.denominator += weight;
+        }
+        bool row_ends = first + count >= range.y;
+        march.cursor = row_ends ? 0u : march.cursor + count;
+        march.row += row_left > 0u && row_ends ? 1u : 0u;
+        work_left -= min(work_left, count + 2u);
+
+        if (march.row >= rows) {
+            bool reached = march.denominator > 0.0;
+            float divisor = volume.kernel == VOLUME_SUM ? 1.0 : (reached ? march.denominator : 1.0);
+            vec4 seen = transfer(volume, march.numerator / divisor);
+            float extinction = reached ? seen.w : 0.0;
+            march.sample_color += extinction * seen.xyz;
+            march.sample_extinction += extinction;
+            march.numerator = 0.0;
+            march.denominator = 0.0;
+            march.row = 0u;
+            ++march.volume;
+        }
+        if (march.volume >= params.volume_count) {
+            bool emits = march.sample_extinction > 0.0;
+            float through = exp_negative(-(march.sample_extinction * length_of_step));
+            vec3 color = march.sample_color / (emits ? march.sample_extinction : 1.0);
+            march.color += emits ? (march.transmittance * (1.0 - through)) * color : vec3(0.0);
+            march.transmittance *= emits ? through : 1.0;
+            march.sample_color = vec3(0.0);
+            march.sample_extinction = 0.0;
+            march.volume = 0u;
+            bool ends = march.transmittance < FEWEST;
+            march.transmittance = ends ? 0.0 : march.transmittance;
+            march.place = ends ? samples : march.place + 1u;
+        }
+    }
+    bool done = march.place >= samples;
+    march.state = done ? 2u : 1u;
+    marches[at] = march;
+    if (done) finish(at, path, march);
+    else atomicAdd(live, 1u);
+}

@@ -1,0 +1,48 @@
+// volume: a scalar between points, and what a transfer function makes of it (section 6 of the paper).
+//
+// twin  crates/reference/src/volume.rs
+#ifndef VOLUME_GLSL
+#define VOLUME_GLSL
+#include "layout.glsl"
+#include "math.glsl"
+#include "grid.glsl"
+
+layout(std430, binding = MARCH_VOLUMES) readonly buffer Volumes { VolumeInfo volumes[]; };
+layout(std430, binding = MARCH_CELLS) readonly buffer VolumeCells { VolumeCell volume_cells[]; };
+layout(std430, binding = MARCH_POINTS) readonly buffer VolumePoints { VolumePoint volume_points[]; };
+layout(std430, binding = MARCH_STOPS) readonly buffer Stops { VolumeStop stops[]; };
+
+// Where a ray is within the box of a volume's grid: x > y, nowhere.
+vec2 within_box(GridInfo grid, vec3 o, vec3 d) {
+    vec3 high = grid.origin + vec3(grid.resolution) * grid.edge;
+    vec2 range = vec2(0.0, NO_HIT);
+    range = clip_slab(range, grid.origin.x, high.x, o.x, d.x);
+    range = clip_slab(range, grid.origin.y, high.y, o.y, d.y);
+    return clip_slab(range, grid.origin.z, high.z, o.z, d.z);
+}
+
+// Points of the row-th row of cells, along x, around a sample.
+uvec2 row_points(VolumeInfo volume, uvec3 low, uvec3 high, uint row) {
+    uint height = high.y - low.y + 1u;
+    uvec2 yz = low.yz + uvec2(row % height, row / height);
+    uint first = volume.first_cell + cell_id(volume.grid, uvec3(low.x, yz));
+    return uvec2(volume_cells[first].first, volume_cells[first + (high.x - low.x) + 1u].first);
+}
+
+// Colour and extinction of a scalar: linear between stops, constant beyond the outer ones.
+vec4 transfer(VolumeInfo volume, float scalar) {
+    uint low = volume.first_stop; // the last stop not above the scalar, or the first
+    uint high = volume.first_stop + volume.stop_count; // one behind
+    while (high - low > 1u) {
+        uint middle = (low + high) / 2u;
+        bool above = stops[middle].value > scalar;
+        high = above ? middle : high;
+        low = above ? low : middle;
+    }
+    VolumeStop from = stops[low];
+    VolumeStop to = stops[min(low + 1u, volume.first_stop + volume.stop_count - 1u)];
+    float span = to.value - from.value;
+    float part = span > 0.0 ? min(max((scalar - from.value) / (span > 0.0 ? span : 1.0), 0.0), 1.0) : 0.0;
+    return vec4(from.color + part * (to.color - from.color), from.extinction + part * (to.extinction - from.extinction));
+}
+#endif
