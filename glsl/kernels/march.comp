@@ -57,7 +57,7 @@ vec2 way_through(Ray ray, uint path, float end) {
     vec2 way = vec2(NO_HIT, 0.0);
     for (uint i = 0u; i < params.volume_count; ++i) {
         bool bounded = volumes[i].bounded != 0u;
-        vec2 box = within_box(volumes[i].grid, ray.origin, ray.direction);
+        vec2 box = within_box(volumes[i].grid.origin, volumes[i].high, ray.origin, ray.direction);
         bool counts = takes_part(volumes[i], path) && box.x <= box.y;
         way.x = counts ? min(way.x, bounded ? 0.0 : box.x) : way.x;
         way.y = counts ? max(way.y, box.y) : way.y;

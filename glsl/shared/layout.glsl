@@ -353,7 +353,7 @@ struct Path {            // 80 bytes
 
 // A field between points (section 6 of the paper).
 struct VolumeInfo {      // 80 bytes
-    GridInfo grid;       //  0  over the points' bounding box grown by the radius
+    GridInfo grid;       //  0  over the points' bounding box grown by the radius, and up to a cell more
     uint first_cell;     // 32  in the cells of all volumes
     uint first_stop;     // 36  in the stops of all volumes
     uint stop_count;     // 40
@@ -362,7 +362,8 @@ struct VolumeInfo {      // 80 bytes
     float inverse_width; // 52  1 / 2 rho
     uint object;         // 56
     uint bounded;        // 60  1: it counts inside the object's surface alone
-    uint pad[4];         // 64
+    vec3 high;           // 64  of the box, whose lowest corner is the grid's
+    uint pad;            // 76
 };
 
 struct VolumeCell {      // 8 bytes

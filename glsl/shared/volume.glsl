@@ -12,13 +12,12 @@ layout(std430, binding = MARCH_CELLS) readonly buffer VolumeCells { VolumeCell v
 layout(std430, binding = MARCH_POINTS) readonly buffer VolumePoints { VolumePoint volume_points[]; };
 layout(std430, binding = MARCH_STOPS) readonly buffer Stops { VolumeStop stops[]; };
 
-// Where a ray is within the box of a volume's grid: x > y, nowhere.
-vec2 within_box(GridInfo grid, vec3 o, vec3 d) {
-    vec3 high = grid.origin + vec3(grid.resolution) * grid.edge;
+// Where a ray is within a box: x > y, nowhere.
+vec2 within_box(vec3 low, vec3 high, vec3 o, vec3 d) {
     vec2 range = vec2(0.0, NO_HIT);
-    range = clip_slab(range, grid.origin.x, high.x, o.x, d.x);
-    range = clip_slab(range, grid.origin.y, high.y, o.y, d.y);
-    return clip_slab(range, grid.origin.z, high.z, o.z, d.z);
+    range = clip_slab(range, low.x, high.x, o.x, d.x);
+    range = clip_slab(range, low.y, high.y, o.y, d.y);
+    return clip_slab(range, low.z, high.z, o.z, d.z);
 }
 
 // Points of the row-th row of cells, along x, around a sample.

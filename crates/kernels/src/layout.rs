@@ -707,7 +707,7 @@ gpu_layout!(Path, 80, {
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct VolumeInfo {
-    /// Over the points' bounding box grown by the radius.
+    /// Over the points' bounding box grown by the radius, and up to a cell more.
     pub grid: GridInfo,
     /// In the cells of all volumes.
     pub first_cell: u32,
@@ -725,12 +725,14 @@ pub struct VolumeInfo {
     pub object: u32,
     /// 1: it counts inside the object's surface alone.
     pub bounded: u32,
+    /// Highest corner of the box, whose lowest is the grid's.
+    pub high: [f32; 3],
     /// Unused.
-    pub pad: [u32; 4],
+    pub pad: u32,
 }
 gpu_layout!(VolumeInfo, 80, {
     grid: 0, first_cell: 32, first_stop: 36, stop_count: 40, kernel: 44, square_radius: 48,
-    inverse_width: 52, object: 56, bounded: 60, pad: 64,
+    inverse_width: 52, object: 56, bounded: 60, high: 64, pad: 76,
 });
 
 /// A cell of a volume's grid.

@@ -9,10 +9,15 @@ use points::{Cloud, NeighborSearch, ObjectPoints, PointSet};
 use scene::{Boundary, Object, Scene, Volume, VolumeKernel};
 use std::sync::Arc;
 
-/// Neighbours that the spacing of a volume's points is measured by, and their boundary.
+/// Neighbours that the spacing of a volume's points is measured by.
 const NEIGHBORS: usize = 16;
-/// A point has no neighbour on one side where none lies farther that way than this share of the farthest.
-const ONE_SIDE: f64 = 0.2;
+/// Neighbours that tell whether a point is on the boundary: of so many at random around a point inside, all
+/// are on one side of a plane through it once in four million times (Wendel 1962).
+const BOUNDARY_NEIGHBORS: usize = 32;
+/// Neighbours count as on one side up to this share of their distance beyond the plane.
+const ONE_SIDE: f64 = 0.22;
+/// Turns of the plane away from the neighbour that is farthest beyond it.
+const TURNS: usize = 24;
 /// Cells along the longest axis: more cost more memory than they save samples.
 const MOST_CELLS: f64 = 160.0;
 
@@ -70,11 +75,14 @@ fn attribute(object: &Object, set: &PointSet, name: &str) -> Result<Vec<f64>, Pl
 }
 
 /// Vectors from each point to its nearest others, in the order of the set.
-fn neighborhoods(positions: &[[f64; 3]]) -> Result<Vec<Vec<[f64; 3]>>, PlanError> {
+fn neighborhoods(
+    positions: &[[f64; 3]],
+    neighbors: usize,
+) -> Result<Vec<Vec<[f64; 3]>>, PlanError> {
     let file_index: Vec<u32> = (0..positions.len() as u32).collect();
     let cloud = Cloud::new(&[ObjectPoints { positions, file_index: &file_index }])?;
     let count = cloud.points.len();
-    let k = NEIGHBORS.min(count.saturating_sub(1)).max(1);
+    let k = neighbors.min(count.saturating_sub(1)).max(1);
     let lists = NeighborSearch::new(&cloud.points, 0).nearest(0..count, k);
     let around = |&slot: &u32| {
         let at = cloud.points[slot as usize].position;
@@ -92,25 +100,39 @@ fn length(v: [f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Which points have no neighbour on one side: away from the mean of all.
+/// Which points have a plane through them that has all their neighbours on one side.
 fn open_points(set: &PointSet) -> Result<Vec<bool>, PlanError> {
-    let is_open = |others: Vec<[f64; 3]>| {
-        let mean = [0, 1, 2].map(|axis| others.iter().map(|y| y[axis]).sum::<f64>());
-        let far = others.iter().map(|&y| length(y)).fold(0.0, f64::max);
-        let side = length(mean);
-        side > 0.0
-            && others.iter().all(|y| {
-                let away = -(0..3).map(|axis| y[axis] * mean[axis]).sum::<f64>() / side;
-                away <= ONE_SIDE * far
-            })
+    let all = neighborhoods(&set.positions, BOUNDARY_NEIGHBORS)?;
+    Ok(all.iter().map(|others| is_open(others)).collect())
+}
+
+/// Begins with the plane across the mean of all directions, and turns it.
+fn is_open(others: &[[f64; 3]]) -> bool {
+    let unit = |v: [f64; 3]| {
+        let length = length(v);
+        (length > 0.0).then(|| v.map(|x| x / length))
     };
-    Ok(neighborhoods(&set.positions)?.into_iter().map(is_open).collect())
+    let directions: Vec<[f64; 3]> = others.iter().filter_map(|&y| unit(y)).collect();
+    let mean = [0, 1, 2].map(|axis| directions.iter().map(|y| y[axis]).sum::<f64>());
+    let mut outwards = unit(mean.map(|x| -x));
+    for _ in 0..TURNS {
+        let Some(out) = outwards else { return false };
+        let beyond = |y: &[f64; 3]| (0..3).map(|axis| y[axis] * out[axis]).sum::<f64>();
+        let Some(worst) = directions.iter().max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else {
+            return true;
+        };
+        if beyond(worst) <= ONE_SIDE {
+            return true;
+        }
+        outwards = unit([0, 1, 2].map(|axis| out[axis] - 0.3 * worst[axis]));
+    }
+    false
 }
 
 /// The mean distance to the 16th neighbour.
 fn spacing(positions: &[[f64; 3]]) -> Result<f64, PlanError> {
     let farthest = |others: &Vec<[f64; 3]>| others.iter().map(|&y| length(y)).fold(0.0, f64::max);
-    let all = neighborhoods(positions)?;
+    let all = neighborhoods(positions, NEIGHBORS)?;
     Ok(all.iter().map(farthest).sum::<f64>() / all.len().max(1) as f64)
 }
 
@@ -156,7 +178,7 @@ impl Volumes {
     ) -> Result<(), PlanError> {
         let smoothing = volume.smoothing.map_or(0.25 * radius * radius, |rho| rho as f32);
         self.step = self.step.min(volume.step.map_or(0.25 * radius, |step| step as f32));
-        let grid = grid_over(&points, radius);
+        let (grid, high) = grid_over(&points, radius);
         let (first_cell, first_stop) = (self.cells.len() as u32, self.stops.len() as u32);
         self.stops.extend(volume.transfer.iter().map(|stop| VolumeStop {
             color: stop.color.map(|c| c as f32),
@@ -178,7 +200,8 @@ impl Volumes {
             inverse_width: 1.0 / (2.0 * smoothing),
             object,
             bounded: u32::from(volume.boundary != Boundary::None),
-            pad: [0; 4],
+            high,
+            pad: 0,
         };
         self.list(&info, points);
         self.infos.push(info);
@@ -268,26 +291,28 @@ impl Volumes {
     }
 }
 
-/// Cells of an edge of the radius, over the points' bounding box grown by it.
-fn grid_over(points: &[VolumePoint], radius: f32) -> GridInfo {
+/// Cells of an edge of the radius, over the points' bounding box grown by it, and the highest corner of that.
+fn grid_over(points: &[VolumePoint], radius: f32) -> (GridInfo, [f32; 3]) {
     let along = |axis: usize| points.iter().map(move |p| p.position[axis]);
-    let (mut low, mut extent) = ([0.0; 3], [0.0f64; 3]);
+    let (mut low, mut high, mut extent) = ([0.0; 3], [0.0; 3], [0.0f64; 3]);
     for axis in 0..3 {
         let least = along(axis).fold(f32::INFINITY, f32::min);
         let most = along(axis).fold(f32::NEG_INFINITY, f32::max);
         if least <= most {
             low[axis] = least - radius;
+            high[axis] = most + radius;
             extent[axis] = f64::from(most) - f64::from(least) + 2.0 * f64::from(radius);
         }
     }
     let longest = extent.iter().copied().fold(0.0, f64::max);
     let edge = f64::from(radius).max(longest / MOST_CELLS);
-    GridInfo {
+    let grid = GridInfo {
         origin: low,
         edge: edge as f32,
         resolution: extent.map(|length| (length * 1.000_01 / edge).ceil().max(1.0) as u32),
         inverse_edge: 1.0 / edge as f32,
-    }
+    };
+    (grid, high)
 }
 
 fn cell_of(grid: &GridInfo, position: [f32; 3]) -> usize {

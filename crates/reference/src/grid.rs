@@ -109,29 +109,12 @@ impl<R: Real> Grid<R> {
         }))
     }
 
-    /// Where a ray is within the grid's box: the first over the second, nowhere.
-    #[must_use]
-    pub fn within_box(&self, o: V3<R>, d: V3<R>) -> [R; 2] {
-        let (mut near, mut far) = (R::of(0.0), R::of(NO_HIT));
-        for axis in 0..3 {
-            let (o, d) = (o.0[axis], d.0[axis]);
-            let low = self.origin.0[axis];
-            let high = low + R::of_u32(self.resolution[axis]) * self.edge;
-            if d.abs() > R::of(PARALLEL) {
-                let (a, b) = ((low - o) / d, (high - o) / d);
-                near = near.max(a.min(b));
-                far = far.min(a.max(b));
-            } else if !(o >= low && o <= high) {
-                (near, far) = (R::of(NO_HIT), R::of(-NO_HIT));
-            }
-        }
-        [near, far]
-    }
-
     /// The first cell of a ray that starts anywhere, or `NONE` where it misses the grid.
     #[must_use]
     pub fn enter(&self, o: V3<R>, d: V3<R>) -> u32 {
-        let [near, far] = self.within_box(o, d);
+        let along = |axis: usize| R::of_u32(self.resolution[axis]) * self.edge;
+        let high = self.origin + V3([0, 1, 2].map(along));
+        let [near, far] = within_box(self.origin, high, o, d);
         if near > far { NONE } else { self.cell_id(self.cell_of(o + d.times(near))) }
     }
 
@@ -150,6 +133,23 @@ impl<R: Real> Grid<R> {
         cell[axis] = cell[axis].wrapping_add(back);
         if cell[axis] >= self.resolution[axis] { NONE } else { self.cell_id(cell) }
     }
+}
+
+/// Where a ray is within a box: the first over the second, nowhere.
+pub fn within_box<R: Real>(low: V3<R>, high: V3<R>, o: V3<R>, d: V3<R>) -> [R; 2] {
+    let (mut near, mut far) = (R::of(0.0), R::of(NO_HIT));
+    for axis in 0..3 {
+        let (o, d) = (o.0[axis], d.0[axis]);
+        let (low, high) = (low.0[axis], high.0[axis]);
+        if d.abs() > R::of(PARALLEL) {
+            let (a, b) = ((low - o) / d, (high - o) / d);
+            near = near.max(a.min(b));
+            far = far.min(a.max(b));
+        } else if !(o >= low && o <= high) {
+            (near, far) = (R::of(NO_HIT), R::of(-NO_HIT));
+        }
+    }
+    [near, far]
 }
 
 /// The least of three crossings.

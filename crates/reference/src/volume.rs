@@ -1,7 +1,7 @@
 //! Twin of `march` and `glsl/shared/volume.glsl`: a ray through volumes (\[T\] §6).
 
 use crate::camera_rays::Ray;
-use crate::grid::{Ball, Grid};
+use crate::grid::{Ball, Grid, within_box};
 use crate::media::Media;
 use crate::real::{NO_HIT, Real, V3};
 use kernels::layout::{VOLUME_SUM, VolumeInfo};
@@ -84,7 +84,8 @@ pub fn march<R: Real>(ray: &Ray<R>, end: R, media: &Media, volumes: &Volumes) ->
         .filter(|volume| volume.bounded == 0 || media.contains(volume.object))
         .collect();
     for volume in &taking_part {
-        let [enter, leave] = Grid::<R>::from(&volume.grid).within_box(ray.origin, ray.direction);
+        let [low, high] = [volume.grid.origin, volume.high].map(V3::of_f32);
+        let [enter, leave] = within_box(low, high, ray.origin, ray.direction);
         if enter <= leave {
             from = from.min(if volume.bounded != 0 { zero } else { enter });
             to = to.max(leave);

@@ -1,0 +1,303 @@
+//! Volumes (\[T\] §6): Eq. 3 against its definition, Beer and Lambert's law, and the twin's bits.
+#![allow(clippy::expect_used, reason = "a test fails by panicking")]
+
+use harness::{
+    Bench, assert_same_bits, assert_same_film, fibonacci_sphere, grid_points, plan_of, random,
+    render_twin, set_of, with_attribute,
+};
+use points::PointSet;
+
+const CAMERA: &str = "
+[camera]
+eye = [0.3, 0.4, 4.0]
+target = [0.0, 0.0, 0.0]
+vertical_fov = 36.0
+";
+
+/// A smooth field over the cube of side 2.
+fn field([x, y, z]: [f64; 3]) -> f64 {
+    0.5 + 0.5 * (2.0 * x).sin() * (1.5 * y + 0.4).cos() * (1.0 - 0.3 * z)
+}
+
+/// Random points in the cube that carry the field.
+fn cloud(count: usize) -> PointSet {
+    let mut seed = 11;
+    let positions: Vec<[f64; 3]> =
+        (0..count).map(|_| [0; 3].map(|_| 2.0 * random(&mut seed) - 1.0)).collect();
+    with_attribute(set_of(positions), "s", field)
+}
+
+const TRANSFER: &str = "transfer = [
+  { value = 0.0, color = [0.0, 0.1, 1.0], extinction = 0.0 },
+  { value = 0.6, color = [1.0, 0.3, 0.0], extinction = 2.0 },
+  { value = 1.0, color = [1.0, 0.9, 0.2], extinction = 6.0 },
+]";
+
+/// The same transfer function in f64.
+fn transfer(s: f64) -> ([f64; 3], f64) {
+    let stops =
+        [(0.0, [0.0, 0.1, 1.0], 0.0), (0.6, [1.0, 0.3, 0.0], 2.0), (1.0, [1.0, 0.9, 0.2], 6.0)];
+    let s = s.clamp(0.0, 1.0);
+    let i = usize::from(s > 0.6);
+    let part = (s - stops[i].0) / (stops[i + 1].0 - stops[i].0);
+    let mix = |a: f64, b: f64| a + part * (b - a);
+    ([0, 1, 2].map(|c| mix(stops[i].1[c], stops[i + 1].1[c])), mix(stops[i].2, stops[i + 1].2))
+}
+
+fn volume_scene(size: &str, radius: f64, step: f64) -> String {
+    format!(
+        "[image]\nsize = {size}\n{CAMERA}
+[[objects]]
+points = \"cloud.ply\"
+[objects.volume]
+scalar = \"s\"
+radius = {radius}
+smoothing = {}
+step = {step}
+{TRANSFER}
+",
+        radius * radius / 4.0
+    )
+}
+
+/// Eq. 3 by its definition, over all points.
+fn direct(set: &PointSet, values: &[f64], x: [f64; 3], radius: f64) -> Option<f64> {
+    let rho = radius * radius / 4.0;
+    let (mut numerator, mut denominator) = (0.0, 0.0);
+    for (p, value) in set.positions.iter().zip(values) {
+        let square: f64 = (0..3).map(|axis| (p[axis] - x[axis]).powi(2)).sum();
+        if square <= radius * radius {
+            let weight = (-square / (2.0 * rho)).exp();
+            numerator += weight * value;
+            denominator += weight;
+        }
+    }
+    (denominator > 0.0).then(|| numerator / denominator)
+}
+
+/// Acceptance: 20 000 random points, step 0.005 in a cloud two units wide, 95 of 100 pixels within 4e-3.
+#[test]
+fn a_random_cloud_agrees_with_a_direct_evaluation_of_equation_3() {
+    let (radius, step) = (0.12, 0.005);
+    let set = cloud(20_000);
+    let values: Vec<f64> = set.attribute("s").expect("values").iter().collect();
+    let film = {
+        let plan = plan_of(&volume_scene("[24, 18]", radius, step), &[set.clone()]);
+        Bench::open().render(&plan).film
+    };
+    // The camera, by its definition.
+    let (eye, half) = ([0.3, 0.4, 4.0], (18f64).to_radians().tan());
+    let norm = |v: [f64; 3]| {
+        let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        v.map(|x| x / length)
+    };
+    let forward = norm(eye.map(|x| -x));
+    let right = norm([-forward[2], 0.0, forward[0]]);
+    let up = [
+        right[1] * forward[2] - right[2] * forward[1],
+        right[2] * forward[0] - right[0] * forward[2],
+        right[0] * forward[1] - right[1] * forward[0],
+    ];
+    let low = [0, 1, 2].map(|a| set.positions.iter().map(|p| p[a]).fold(9.0, f64::min) - radius);
+    let high = [0, 1, 2].map(|a| set.positions.iter().map(|p| p[a]).fold(-9.0, f64::max) + radius);
+    let mut errors = Vec::new();
+    for j in (0..18).step_by(3) {
+        for i in (0..24).step_by(3) {
+            let x = (f64::from(i) + 0.5 - 12.0) * half / 9.0;
+            let y = (9.0 - f64::from(j) - 0.5) * half / 9.0;
+            let d = norm([0, 1, 2].map(|a| forward[a] + x * right[a] + y * up[a]));
+            let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+            for a in 0..3 {
+                let (s, t) = ((low[a] - eye[a]) / d[a], (high[a] - eye[a]) / d[a]);
+                enter = enter.max(s.min(t));
+                leave = leave.min(s.max(t));
+            }
+            let (mut color, mut through) = ([0.0; 3], 1.0);
+            let mut t = enter + 0.5 * step;
+            while t < leave {
+                if let Some(s) = direct(&set, &values, [0, 1, 2].map(|a| eye[a] + t * d[a]), radius)
+                {
+                    let (c, sigma) = transfer(s);
+                    let alpha = 1.0 - (-sigma * step).exp();
+                    color = [0, 1, 2].map(|k| color[k] + through * alpha * c[k]);
+                    through *= 1.0 - alpha;
+                }
+                t += step;
+            }
+            let seen = film.color[(j * 24 + i) as usize];
+            let error = (0..3).map(|k| (f64::from(seen[k]) - color[k]).abs()).fold(0.0, f64::max);
+            errors.push(error.max((f64::from(seen[3]) - (1.0 - through)).abs()));
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    let (median, p95) = (errors[errors.len() / 2], errors[errors.len() * 95 / 100]);
+    println!("Eq. 3: median {median:.1e}, 95th percentile {p95:.1e}, limit 4e-3");
+    assert!(p95 < 4e-3, "95th percentile {p95}");
+    assert!(film.color.iter().any(|c| c[3] > 0.9), "nothing was seen");
+}
+
+/// Midpoints are of second order where extinction is smooth along the ray: here the field fades at the faces of the
+/// cube to values that are not seen, and the weights are e^-8 at the radius. Where a cloud ends at once, as it does
+/// by Eq. 3 a radius beyond its last points, one step counts or not: first order.
+#[test]
+fn the_picture_converges_with_the_square_of_the_step() {
+    let bench = Bench::open();
+    let fading = |p: [f64; 3]| field(p) * p.iter().map(|x| 1.0 - x * x).product::<f64>();
+    let set = with_attribute(set_of(cloud(16_000).positions), "s", fading);
+    let film = |step: f64| {
+        let text =
+            volume_scene("[32, 24]", 0.3, step).replace("smoothing = 0.0225", "smoothing = 0.0056");
+        assert!(text.contains("smoothing = 0.0056"));
+        let text = text.replace("value = 0.0", "value = 0.2");
+        bench.render(&plan_of(&text, &[set.clone()])).film
+    };
+    let finest = film(0.0025);
+    let errors = [0.08, 0.04, 0.02].map(|step| {
+        let coarse = film(step);
+        let squares: f64 = (coarse.color.iter().zip(&finest.color))
+            .map(|(a, b)| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>())
+            .sum();
+        (squares / (3.0 * finest.color.len() as f64)).sqrt()
+    });
+    println!("steps 0.08, 0.04, 0.02: {errors:.6?}");
+    assert!(errors[0] / errors[1] > 3.0 && errors[1] / errors[2] > 3.0, "{errors:?}");
+}
+
+/// A glass ball (1.33) full of constant fog: Beer and Lambert along the refracted chord 2 cos θt, within
+/// 1.5e-2.
+#[test]
+fn fog_in_a_glass_ball_obeys_beer_and_lambert_along_the_refracted_chord() {
+    let mut seed = 5;
+    let mut positions = fibonacci_sphere(10_000);
+    while positions.len() < 20_000 {
+        let p = [0; 3].map(|_| 2.0 * random(&mut seed) - 1.0);
+        if p.iter().map(|x| x * x).sum::<f64>() < 0.97 {
+            positions.push(p);
+        }
+    }
+    let is_skin = |p: [f64; 3]| f64::from(p.iter().map(|x| x * x).sum::<f64>() > 0.99);
+    let set = with_attribute(with_attribute(set_of(positions), "s", |_| 1.0), "skin", is_skin);
+    let text = format!(
+        "[image]\nsize = [96, 72]\n{CAMERA}
+[background]
+color = [1.0, 1.0, 1.0]
+[[objects]]
+points = \"fog.ply\"
+material = {{ kind = \"glass\", ior = 1.33 }}
+[objects.volume]
+scalar = \"s\"
+radius = 0.2
+step = 0.01
+boundary = \"skin\"
+transfer = [{{ value = 1.0, color = [0.0, 0.0, 0.0], extinction = 0.8 }}]
+"
+    );
+    let plan = plan_of(&text, &[set]);
+    let on_device = Bench::open().render(&plan);
+    assert_same_bits("fog", &on_device, &render_twin(&plan));
+    let eye = [0.3, 0.4, 4.0];
+    let mut errors = Vec::new();
+    for (at, color) in on_device.film.color.iter().enumerate() {
+        if on_device.film.object[at] < 0.0 {
+            assert_eq!(color[0], 1.0, "the background beside the ball");
+            continue;
+        }
+        let p = on_device.film.position[at].map(f64::from);
+        let d: Vec<f64> = (0..3).map(|a| p[a] - eye[a]).collect();
+        let length = d.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let cosine = -(0..3).map(|a| p[a] * d[a] / length).sum::<f64>();
+        // Within 0.93 of the radius.
+        let sine = (1.0 - cosine * cosine).sqrt();
+        if sine > 0.93 {
+            continue;
+        }
+        let chord = 2.0 * (1.0 - (sine / 1.33).powi(2)).sqrt();
+        errors.push((f64::from(color[1]) - (-0.8 * chord).exp()).abs());
+    }
+    let worst = errors.iter().copied().fold(0.0, f64::max);
+    println!("fog in glass: worst of {} pixels {worst:.1e}, limit 1.5e-2", errors.len());
+    assert!(errors.len() > 1_000 && worst < 1.5e-2, "{worst}");
+}
+
+/// Two volumes that overlap, a surface between them that throws a shadow and gets one from them, glass in
+/// front: the twin gives the device's bits, for any K; and what is skipped changes no byte.
+#[test]
+fn overlapping_volumes_with_surfaces_are_the_same_to_the_bit() {
+    let text = format!(
+        "[image]\nsize = [96, 72]\n{CAMERA}
+[background]
+color = [0.2, 0.3, 0.4]
+[[lights]]
+kind = \"directional\"
+direction = [-0.3, -1.0, -0.2]
+irradiance = [3.0, 3.0, 3.0]
+[[objects]]
+points = \"a.ply\"
+[objects.volume]
+scalar = \"s\"
+{TRANSFER}
+[[objects]]
+points = \"b.ply\"
+transform = {{ scale = 0.7, translate = [0.5, 0.2, 0.6] }}
+[objects.volume]
+scalar = \"s\"
+kernel = \"sum\"
+radius = 0.15
+transfer = [{{ value = 0.0, color = [0.0, 1.0, 0.0], extinction = 0.0 }},
+            {{ value = 4.0, color = [0.5, 1.0, 0.0], extinction = 3.0 }}]
+[[objects]]
+points = \"floor.ply\"
+transform = {{ scale = 4.0, translate = [-2.0, -1.2, -2.0] }}
+[[objects]]
+points = \"glass.ply\"
+transform = {{ scale = 0.4, translate = [-0.4, 0.3, 1.5] }}
+material = {{ kind = \"glass\", ior = [1.4, 1.5, 1.6] }}
+"
+    );
+    let sets =
+        [cloud(3_000), cloud(2_000), set_of(grid_points(40)), set_of(fibonacci_sphere(2_000))];
+    let mut plan = plan_of(&text, &sets);
+    let bench = Bench::open();
+    let whole = bench.render(&plan);
+    assert_same_bits("volumes", &whole, &render_twin(&plan));
+    assert!(whole.film.color.as_flattened().iter().all(|value| value.is_finite()));
+    let skipped = plan.volumes.cells.iter().filter(|cell| cell.counts == 0).count();
+    for cell in &mut plan.volumes.cells {
+        cell.counts = 1;
+    }
+    plan.cells_per_pass = 3;
+    assert!(skipped > 0);
+    assert_same_film("skipping and K", &whole.film, &bench.render(&plan).film);
+}
+
+/// `all` and `auto` find the same skin of a solid ball as an attribute does, up to single points.
+#[test]
+fn the_skin_of_a_solid_is_found() {
+    let mut seed = 9;
+    let mut positions = fibonacci_sphere(2_000);
+    while positions.len() < 12_000 {
+        let p = [0; 3].map(|_| 2.0 * random(&mut seed) - 1.0);
+        if p.iter().map(|x| x * x).sum::<f64>() < 0.9 {
+            positions.push(p);
+        }
+    }
+    let set = with_attribute(set_of(positions), "s", |_| 1.0);
+    let text = "[image]\nsize = [32, 24]
+[[objects]]
+points = \"ball.ply\"
+material = { kind = \"glass\", ior = 1.0 }
+[objects.volume]
+scalar = \"s\"
+boundary = \"auto\"
+transfer = [{ value = 1.0, color = [1.0, 1.0, 1.0], extinction = 1.0 }]
+";
+    let plan = plan_of(text, &[set]);
+    let on_skin = plan
+        .cloud
+        .points
+        .iter()
+        .filter(|p| p.position.iter().map(|x| x * x).sum::<f32>() > 0.99)
+        .count();
+    assert!(on_skin > 1_980, "{on_skin} of 2000 points of the skin");
+    assert!(plan.cloud.points.len() < 2_200, "{} points", plan.cloud.points.len());
+}
