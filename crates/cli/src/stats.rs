@@ -122,7 +122,7 @@ impl Row {
     /// Puts it together.
     pub fn new(measured: &Measured<'_>) -> Self {
         let Measured { engine, plan, built, frame, .. } = *measured;
-        let points = plan.cloud.points.len() as u64;
+        let points = plan.point_count;
         let grid = built.grid();
         Self {
             name: measured.name.clone(),
@@ -137,7 +137,7 @@ impl Row {
             },
             passes: frame.passes,
             tests_per_ray: frame.tests as f64 / frame.rays.all().max(1) as f64,
-            bytes_per_point: built.bytes() as f64 / points.max(1) as f64,
+            bytes_per_point: (built.bytes() + plan.volumes.bytes()) as f64 / points.max(1) as f64,
             pixels: pixel_hash(&frame.film),
             device: engine.name(),
             driver: engine.driver(),

@@ -82,6 +82,8 @@ pub struct Plan {
     pub filter: Vec<f32>,
     /// Parameters of `camera_rays`, but for tile and sample.
     pub camera: CameraParams,
+    /// Points of all objects, whether they carry a surface, a volume, or both.
+    pub point_count: u64,
     /// Volumes of the scene.
     pub volumes: Volumes,
     /// Objects of glass that rays from the camera start inside of.
@@ -270,6 +272,7 @@ impl Plan {
             grid_resolution: scene.render.grid_resolution,
             cells_per_pass: scene.render.cells_per_pass,
             primary: scene.render.primary,
+            point_count: sets.iter().map(|set| set.len() as u64).sum(),
             volumes,
             camera_media: inside::media_of_eye(scene, &sets, &world, camera.eye),
             samples: scene.image.samples,

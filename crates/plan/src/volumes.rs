@@ -169,6 +169,15 @@ pub(crate) fn plan_volumes(
 }
 
 impl Volumes {
+    /// Bytes of all of it.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        (size_of_val(self.infos.as_slice())
+            + size_of_val(self.cells.as_slice())
+            + size_of_val(self.points.as_slice())
+            + size_of_val(self.stops.as_slice())) as u64
+    }
+
     fn add(
         &mut self,
         object: u32,

@@ -86,7 +86,7 @@ fn scene_json(scene: &Scene, plan: &Plan, summaries: &[Arc<PointSummary>]) -> Va
         "image": { "size": scene.image.size, "samples": scene.image.samples },
         "camera": camera,
         "lights": scene.lights.len(),
-        "points": plan.cloud.points.len(),
+        "points": plan.point_count,
         "bounds": { "min": min, "max": max },
         "objects": objects,
         "settings": scene.settings_toml(),
@@ -126,7 +126,7 @@ fn write_scene(
         scene.lights.iter().filter(|light| matches!(light, Light::Directional { .. })).count();
     let point = scene.lights.len() - directional;
     writeln!(text, "lights   {directional} directional, {point} point")?;
-    writeln!(text, "points   {}", plan.cloud.points.len())?;
+    writeln!(text, "points   {}", plan.point_count)?;
     writeln!(text, "min      {}", corner(plan.cloud.bounds[0]))?;
     writeln!(text, "max      {}", corner(plan.cloud.bounds[1]))?;
     for ((object, summary), index) in scene.objects.iter().zip(summaries).zip(0..) {

@@ -113,8 +113,13 @@ fn write_pictures(
 
 /// An object of one point, or of coinciding ones, is no error, but surely not what was meant.
 fn warn_of_missing_surfaces(plan: &Plan, built: &Built, progress: &Progress) {
+    let mut volumes =
+        (0u32..).map(|object| plan.volumes.infos.iter().any(|volume| volume.object == object));
     for (slots, name) in plan.cloud.objects.iter().zip(&plan.names) {
         let outcomes = &built.outcomes()[slots.range()];
+        if volumes.next().is_some_and(|is_volume| is_volume) {
+            continue;
+        }
         if outcomes.iter().all(|outcome| outcome.trust <= 0.0) {
             progress.note(&format!(
                 "warning: object '{name}': none of its {} points carries a surface, since points \
@@ -136,7 +141,7 @@ fn summary(
     let outputs: Vec<String> =
         args.outputs.iter().map(|output| output.display().to_string()).collect();
     let [width, height] = plan.window.size;
-    let points = plan.cloud.points.len();
+    let points = plan.point_count;
     let passes = match frame.passes {
         1 => "1 pass".to_owned(),
         passes => format!("{passes} passes"),
