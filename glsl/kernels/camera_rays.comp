@@ -3,6 +3,7 @@
 // reads   grid
 //         filter_steps     where the integral of the reconstruction filter takes equal steps, in pixels
 //                          from the centre of a pixel
+//         start            the path of every ray, but for its pixel
 // writes  the ray state, paths   every pixel, and rays that are none where the tile ends before its
 //                          last workgroup does
 // runs    one invocation per pixel of the tile
@@ -22,6 +23,7 @@
 
 layout(local_size_x = TILE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
+layout(std430, binding = CAMERA_PATH) readonly buffer Start { Path start; };
 layout(std430, binding = WAVE_PATHS) writeonly buffer Paths { Path paths[]; };
 layout(std430, binding = CAMERA_FILTER) readonly buffer Filter { float filter_steps[]; };
 layout(push_constant) uniform Push { CameraParams params; };
@@ -37,8 +39,8 @@ void main() {
     uvec2 pixel = tile_pixel();
     uint ray = tile_ray(params.tile_size);
     bool outside = any(greaterThanEqual(pixel, params.tile_size));
-    paths[ray] = Path(vec3(1.0), outside ? NONE : pixel.y * params.tile_size.x + pixel.x, CHANNELS_ALL, 0u, 0u, 0u,
-                      uint[MEDIA_WORDS](0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u));
+    paths[ray] = start;
+    paths[ray].pixel = outside ? NONE : pixel.y * params.tile_size.x + pixel.x;
     uvec2 at = params.tile_origin + pixel;
     vec2 offset = vec2(0.0), lens = vec2(0.0);
     if (params.sample_index != NONE) {

@@ -101,6 +101,7 @@
 #define CHANNELS_ALL 7 // a path's channels: 1 red, 2 green, 4 blue
 #define CAMERA_FILTER 28
 #define FILM_SUMS 29
+#define CAMERA_PATH 32
 #define SHADE_IMAGES 30
 #define SHADE_TEXELS 31
 

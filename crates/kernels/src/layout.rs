@@ -190,6 +190,8 @@ constants! {
     CAMERA_FILTER = 28;
     /// Binding of `accumulate`: [`FilmSum`]s.
     FILM_SUMS = 29;
+    /// Binding of `camera_rays`: the [`Path`] of every ray, but for its pixel.
+    CAMERA_PATH = 32;
     /// Binding of `shade`: [`ImageInfo`]s.
     SHADE_IMAGES = 30;
     /// Binding of `shade`: a table of sRGB, and the texels of all images.

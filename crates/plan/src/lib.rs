@@ -11,6 +11,7 @@ mod diagnostic;
 mod discs;
 mod filter;
 mod images;
+mod inside;
 mod isolated;
 mod picture;
 
@@ -22,9 +23,9 @@ pub use picture::{Picture, Rays};
 
 use images::{ImageList, Use};
 use kernels::layout::{
-    self, BackgroundInfo, CameraParams, FIT_FULL, FIT_INCOMPLETE, FitParams, ImageInfo,
-    LIGHT_DIRECTIONAL, LIGHT_POINT, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR, NONE,
-    ObjectInfo, WaveParams,
+    self, BackgroundInfo, CHANNELS_ALL, CameraParams, FIT_FULL, FIT_INCOMPLETE, FitParams,
+    ImageInfo, LIGHT_DIRECTIONAL, LIGHT_POINT, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR,
+    MEDIA_WORDS, NONE, ObjectInfo, WaveParams,
 };
 use points::{Cloud, CloudError, ObjectPoints, PointSet};
 pub use scene::Primary;
@@ -79,6 +80,8 @@ pub struct Plan {
     pub filter: Vec<f32>,
     /// Parameters of `camera_rays`, but for tile and sample.
     pub camera: CameraParams,
+    /// Objects of glass that rays from the camera start inside of.
+    pub camera_media: Vec<u32>,
     /// Parameters of the kernels that scatter and shade, but for the tile and the wave.
     pub wave: WaveParams,
     /// What shading needs of each object.
@@ -247,6 +250,7 @@ impl Plan {
             grid_resolution: scene.render.grid_resolution,
             cells_per_pass: scene.render.cells_per_pass,
             primary: scene.render.primary,
+            camera_media: inside::media_of_eye(scene, &sets, &world, camera.eye),
             samples: scene.image.samples,
             filter: filter::steps(scene.image.filter, scene.image.filter_width),
             camera: CameraParams { seed: scene.render.seed, ..view.params },
@@ -295,6 +299,24 @@ impl Plan {
     #[must_use]
     pub fn refines(&self) -> bool {
         self.objects.iter().any(|object| object.max_iterations > 0)
+    }
+
+    /// The path of every ray from the camera, but for its pixel.
+    #[must_use]
+    pub fn camera_path(&self) -> layout::Path {
+        let mut media = [0; MEDIA_WORDS as usize];
+        for (i, object) in self.camera_media.iter().enumerate() {
+            media[i / 2] |= object << (16 * (i % 2));
+        }
+        layout::Path {
+            throughput: [1.0; 3],
+            pixel: NONE,
+            channels: CHANNELS_ALL,
+            bounces: 0,
+            crossings: 0,
+            media_count: self.camera_media.len() as u32,
+            media,
+        }
     }
 
     /// Whether any surface sends rays on.

@@ -26,6 +26,12 @@ fn outranks(a: u32, b: u32, objects: &[ObjectInfo]) -> bool {
 }
 
 impl Media {
+    /// Inside of these.
+    #[must_use]
+    pub fn of(objects: &[u32]) -> Self {
+        Self(objects.to_vec())
+    }
+
     /// Whether the ray is outside of everything.
     #[must_use]
     pub fn is_empty(&self) -> bool {

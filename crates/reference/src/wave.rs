@@ -54,7 +54,7 @@ impl<R: Real> PixelTrace<'_, R> {
             channels: CHANNELS_ALL,
             bounces: 0,
             crossings: 0,
-            media: Media::default(),
+            media: Media::of(&self.plan.camera_media),
         };
         let mut rays = vec![(ray, path)];
         let mut discs = discs;

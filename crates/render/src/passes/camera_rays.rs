@@ -3,7 +3,9 @@
 use super::{bind_state, over_pixels, state_bindings};
 use crate::state::StateImages;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
-use kernels::layout::{CAMERA_FILTER, CameraParams, STATE_OUT, TRACE_INFO, WAVE_PATHS};
+use kernels::layout::{
+    CAMERA_FILTER, CAMERA_PATH, CameraParams, STATE_OUT, TRACE_INFO, WAVE_PATHS,
+};
 use kernels::spirv;
 use std::sync::Arc;
 
@@ -17,8 +19,10 @@ impl CameraRays {
 
     pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
         let mut bindings = state_bindings(STATE_OUT).to_vec();
-        bindings
-            .extend([TRACE_INFO, CAMERA_FILTER, WAVE_PATHS].map(|at| (at, Binding::StorageBuffer)));
+        bindings.extend(
+            [TRACE_INFO, CAMERA_FILTER, CAMERA_PATH, WAVE_PATHS]
+                .map(|at| (at, Binding::StorageBuffer)),
+        );
         let params = size_of::<CameraParams>();
         let kernel = Kernel::new(device, Self::NAME, &spirv::camera_rays(), &bindings, params)?;
         Ok(Self { kernel })
@@ -30,6 +34,7 @@ impl CameraRays {
         rec: &mut Recorder,
         grid_info: &Buffer,
         filter: &Buffer,
+        start: &Buffer,
         out: &StateImages,
         paths: &Buffer,
         params: &CameraParams,
@@ -38,6 +43,7 @@ impl CameraRays {
             .buffer(TRACE_INFO, grid_info)
             .buffer(WAVE_PATHS, paths)
             .buffer(CAMERA_FILTER, filter)
+            .buffer(CAMERA_PATH, start)
             .push(params)
             .dispatch(over_pixels(params.tile_size));
     }
