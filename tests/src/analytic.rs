@@ -144,6 +144,36 @@ impl Shape {
     }
 }
 
+/// Where a ray meets a surface, and what is on either side.
+struct Meeting {
+    t: f64,
+    x: V3,
+    body: usize,
+    /// Facing the ray.
+    normal: V3,
+    /// Index and absorption on the ray's way, and beyond the surface; equal bodies change nothing.
+    before: (f64, f64),
+    beyond: (f64, f64),
+    changes: bool,
+}
+
+fn meet(bodies: &[Body], o: V3, d: V3) -> Option<Meeting> {
+    let crossings =
+        bodies.iter().enumerate().filter_map(|(i, b)| Some((b.shape.crossing(o, d)?, i)));
+    let (t, body) = crossings.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let inside = |at: f64| bodies.iter().rposition(|b| b.shape.holds(add(o, d, at)));
+    let glass = |body: Option<usize>| match body.map(|body| bodies[body].matter) {
+        Some(Matter::Glass(index, absorption)) => (index, absorption),
+        _ => (1.0, 0.0),
+    };
+    let (before, beyond) = (inside(0.5 * t), inside(t + 1e-7));
+    let x = add(o, d, t);
+    let outward = bodies[body].shape.normal(x);
+    let normal = if dot(outward, d) < 0.0 { outward } else { outward.map(|c| -c) };
+    let changes = before != beyond;
+    Some(Meeting { t, x, body, normal, before: glass(before), beyond: glass(beyond), changes })
+}
+
 /// The way of one ray that is never divided: glass refracts it, or reflects it totally.
 #[derive(Debug, Clone)]
 pub struct Way {
@@ -162,62 +192,82 @@ pub struct Way {
 /// # Panics
 /// Where it finds no end in 1000 surfaces.
 #[must_use]
-pub fn follow(bodies: &[Body], mut o: V3, mut d: V3) -> Way {
+pub fn follow(bodies: &[Body], mut o: V3, d: V3) -> Way {
     let mut way = Way { direction: d, throughput: [1.0; 3], hits: Vec::new(), total: false };
     for _ in 0..1000 {
-        let nearest = bodies
-            .iter()
-            .enumerate()
-            .filter_map(|(i, body)| Some((body.shape.crossing(o, d)?, i)))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        // Where nothing is met, a place that is not far says what the ray is in.
-        let t = nearest.map_or(1e-3, |(t, _)| t);
-        let inside = |at: f64| bodies.iter().rposition(|b| b.shape.holds(add(o, d, at)));
-        let glass = |body: Option<usize>| match body.map(|body| bodies[body].matter) {
-            Some(Matter::Glass(index, absorption)) => (index, absorption),
-            _ => (1.0, 0.0),
-        };
-        let medium = inside(0.5 * t);
-        let Some((t, body)) = nearest else {
-            way.direction = d;
-            return way;
-        };
-        let (n1, absorption) = glass(medium);
-        way.throughput = way.throughput.map(|share| share * (-absorption * t).exp());
-        let x = add(o, d, t);
-        let outward = bodies[body].shape.normal(x);
-        let n = if dot(outward, d) < 0.0 { outward } else { outward.map(|c| -c) };
-        match bodies[body].matter {
+        let d = way.direction;
+        let Some(met) = meet(bodies, o, d) else { return way };
+        let (index, absorption) = met.before;
+        way.throughput = way.throughput.map(|share| share * (-absorption * met.t).exp());
+        match bodies[met.body].matter {
             Matter::Mirror(reflectance) => {
                 way.throughput = [0, 1, 2].map(|i| way.throughput[i] * reflectance[i]);
-                way.hits.push((body, x));
-                d = add(d, n, -2.0 * dot(n, d));
+                way.direction = mirrored(d, met.normal);
+                way.hits.push((met.body, met.x));
             }
-            Matter::Glass(..) => {
-                let beyond = inside(t + 1e-7);
-                if beyond != medium {
-                    way.hits.push((body, x));
-                    let (n2, _) = glass(beyond);
-                    let (total, bent) = refract(d, n, n1 / n2);
-                    (way.total, d) = (way.total | total, bent);
-                }
+            Matter::Glass(..) if met.changes => {
+                let bent = refracted(d, met.normal, index / met.beyond.0);
+                way.total |= bent.is_none();
+                way.direction = bent.unwrap_or_else(|| mirrored(d, met.normal));
+                way.hits.push((met.body, met.x));
             }
+            Matter::Glass(..) => {}
         }
-        (o, d) = (x, unit(d));
+        o = met.x;
     }
-    panic!("a ray from {o:?} along {d:?} finds no end");
+    panic!("a ray from {o:?} along {:?} finds no end", way.direction);
 }
 
-/// Snell's law by the part of the direction along the surface; whether it is reflected totally, and where it goes.
-fn refract(d: V3, n: V3, ratio: f64) -> (bool, V3) {
-    let across = dot(n, d);
-    let level = add(d, n, -across).map(|c| ratio * c);
-    let square = 1.0 - dot(level, level);
-    if square <= 0.0 {
-        (true, add(d, n, -2.0 * across))
-    } else {
-        (false, add(level, n, -square.sqrt()))
+/// All ways of a ray through glass that absorbs nothing, which Fresnel's equations divide: the last direction of
+/// each and its share. Those under `least` are left out.
+#[must_use]
+pub fn divided(bodies: &[Body], o: V3, d: V3, least: f64) -> Vec<(V3, f64)> {
+    let (mut ends, mut open) = (Vec::new(), vec![(o, d, 1.0)]);
+    while let Some((o, d, share)) = open.pop() {
+        let Some(met) = meet(bodies, o, d) else {
+            ends.push((d, share));
+            continue;
+        };
+        let (n1, n2) = (met.before.0, met.beyond.0);
+        let reflected = match refracted(d, met.normal, n1 / n2) {
+            _ if !met.changes => 0.0,
+            None => 1.0,
+            Some(_) => fresnel(-dot(d, met.normal), n1, n2),
+        };
+        let bent = if met.changes { refracted(d, met.normal, n1 / n2) } else { Some(d) };
+        let ways = [
+            (mirrored(d, met.normal), share * reflected),
+            (bent.unwrap_or(d), share * (1.0 - reflected)),
+        ];
+        open.extend(
+            ways.into_iter().filter(|way| way.1 > least).map(|(d, share)| (met.x, d, share)),
+        );
     }
+    ends
+}
+
+/// What of unpolarised light is reflected from index n1 to n2, by the angles alone; not for total reflection.
+#[must_use]
+pub fn fresnel(cosine: f64, n1: f64, n2: f64) -> f64 {
+    let a = cosine.clamp(0.0, 1.0).acos();
+    let b = (n1 / n2 * a.sin()).asin();
+    if a < 1e-5 {
+        return ((n1 - n2) / (n1 + n2)).powi(2);
+    }
+    let across = (a - b).sin() / (a + b).sin();
+    let along = (a - b).tan() / (a + b).tan();
+    0.5 * (across * across + along * along)
+}
+
+fn mirrored(d: V3, n: V3) -> V3 {
+    unit(add(d, n, -2.0 * dot(n, d)))
+}
+
+/// Snell's law by the part of the direction along the surface; nothing where all is reflected.
+fn refracted(d: V3, n: V3, ratio: f64) -> Option<V3> {
+    let level = add(d, n, -dot(n, d)).map(|c| ratio * c);
+    let square = 1.0 - dot(level, level);
+    (square > 0.0).then(|| unit(add(level, n, -square.sqrt())))
 }
 
 /// The colour of an environment image of linear texels in a direction: bilinear, +y is the top row, −z
