@@ -9,6 +9,7 @@
     reason = "a test fails by panicking, and says what it skips"
 )]
 
+pub mod analytic;
 mod shapes;
 
 pub use shapes::{

@@ -264,6 +264,31 @@ fn an_abbe_number_gives_each_channel_its_index() {
     assert!(error(&several).contains("objects[0].material.abbe: found beside an ior of three"));
 }
 
+/// By hand: BK7 (1.5168, 64.17), n_F − n_C = 0.5168 / 64.17 = 0.0080536 and B = 0.0042173 µm²; dense flint
+/// SF10 (1.72825, 28.41), 0.0256336 and 0.0134232. The indices of any two channels give A and B back.
+#[test]
+fn abbe_numbers_are_of_the_lines_d_f_and_c() {
+    for (n_d, abbe, between, b) in
+        [(1.5168, 64.17, 0.008_053_6, 0.004_217_3), (1.728_25, 28.41, 0.025_633_6, 0.013_423_2)]
+    {
+        let text =
+            format!("{SMALL}material = {{ kind = \"glass\", ior = {n_d:?}, abbe = {abbe:?} }}");
+        let MaterialKind::Glass { ior, .. } = read(&text).unwrap().objects[0].material.kind else {
+            panic!("no glass")
+        };
+        let at = |wavelength: f64| 1.0 / (wavelength * wavelength);
+        let channels = [0.6114, 0.5491, 0.4642];
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            let slope = (ior[j] - ior[i]) / (at(channels[j]) - at(channels[i]));
+            let index = |wavelength: f64| ior[i] + slope * (at(wavelength) - at(channels[i]));
+            assert!((slope - b).abs() < 1e-7, "B = {slope}, not {b}");
+            assert!((index(0.587_56) - n_d).abs() < 1e-12, "n_d = {}", index(0.587_56));
+            let found = index(0.486_13) - index(0.656_27);
+            assert!((found - between).abs() < 1e-7, "n_F - n_C = {found}, not {between}");
+        }
+    }
+}
+
 #[test]
 fn what_is_left_out_is_the_contracts_default() {
     let scene = read(SMALL).unwrap();
