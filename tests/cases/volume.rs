@@ -82,7 +82,7 @@ fn a_random_cloud_agrees_with_a_direct_evaluation_of_equation_3() {
     let set = cloud(20_000);
     let values: Vec<f64> = set.attribute("s").expect("values").iter().collect();
     let film = {
-        let plan = plan_of(&volume_scene("[24, 18]", radius, step), &[set.clone()]);
+        let plan = plan_of(&volume_scene("[24, 18]", radius, step), std::slice::from_ref(&set));
         Bench::open().render(&plan).film
     };
     // The camera, by its definition.
@@ -149,7 +149,7 @@ fn the_picture_converges_with_the_square_of_the_step() {
             volume_scene("[32, 24]", 0.3, step).replace("smoothing = 0.0225", "smoothing = 0.0056");
         assert!(text.contains("smoothing = 0.0056"));
         let text = text.replace("value = 0.0", "value = 0.2");
-        bench.render(&plan_of(&text, &[set.clone()])).film
+        bench.render(&plan_of(&text, std::slice::from_ref(&set))).film
     };
     let finest = film(0.0025);
     let errors = [0.08, 0.04, 0.02].map(|step| {

@@ -111,6 +111,7 @@ impl Real for f32 {
         p = p * z + 4.166_664_568_298_827e-2;
         (p * z * z - 0.5 * z) + 1.0
     }
+    #[expect(clippy::excessive_precision, reason = "the kernel's digits")]
     fn arc_tangent(self, x: Self) -> Self {
         let (across, along) = (Real::abs(self), Real::abs(x));
         let (lesser, larger) = (Real::min(across, along), Real::max(across, along));

@@ -8,9 +8,9 @@
 use crate::RenderError;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
-    AlbedoIo, CameraRays, Classify, ClassifyIo, DiscTrace, DiscTraceIo, GridTrace, GridTraceIo,
-    March, MarchIo, Marched, Records, Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo,
-    ShadowRays, ShadowRaysIo, Start, SurfaceHit, SurfaceHitIo,
+    AlbedoIo, CameraRays, CameraRaysIo, Classify, ClassifyIo, DiscTrace, DiscTraceIo, GridTrace,
+    GridTraceIo, March, MarchIo, Marched, Records, Refine, RefineIo, Scatter, ScatterIo, Shade,
+    ShadeIo, ShadowRays, ShadowRaysIo, Start, SurfaceHit, SurfaceHitIo,
 };
 use crate::samples::Samples;
 use crate::state::RayState;
@@ -261,15 +261,15 @@ impl Renderer {
     }
 
     fn start_rays(&mut self, plan: &Plan, tile: &Window, sample: u32) {
-        self.passes.camera_rays.record(
-            &mut self.recorder,
-            &self.surfaces.grid_info,
-            &self.filter,
-            &self.camera_path,
-            &self.state.current,
-            self.wave.paths(),
-            &plan.camera_of(tile, sample),
-        );
+        let io = CameraRaysIo {
+            grid_info: &self.surfaces.grid_info,
+            filter: &self.filter,
+            start: &self.camera_path,
+            state: &self.state.current,
+            paths: self.wave.paths(),
+        };
+        let params = plan.camera_of(tile, sample);
+        self.passes.camera_rays.record(&mut self.recorder, io, &params);
     }
 
     /// Lists the points of each screen tile, if this tile is to be traced by discs; whether it is.

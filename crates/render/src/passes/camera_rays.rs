@@ -9,6 +9,18 @@ use kernels::layout::{
 use kernels::spirv;
 use std::sync::Arc;
 
+/// What the pass works on.
+#[derive(Clone, Copy)]
+pub(crate) struct CameraRaysIo<'a> {
+    pub grid_info: &'a Buffer,
+    /// Where the reconstruction filter's integral takes equal steps.
+    pub filter: &'a Buffer,
+    /// The path of every ray, but for its pixel.
+    pub start: &'a Buffer,
+    pub state: &'a StateImages,
+    pub paths: &'a Buffer,
+}
+
 /// The camera's ray of each pixel, in the first cell that it meets.
 pub(crate) struct CameraRays {
     kernel: Kernel,
@@ -29,21 +41,12 @@ impl CameraRays {
     }
 
     /// Records the start of every ray of a tile.
-    pub fn record(
-        &self,
-        rec: &mut Recorder,
-        grid_info: &Buffer,
-        filter: &Buffer,
-        start: &Buffer,
-        out: &StateImages,
-        paths: &Buffer,
-        params: &CameraParams,
-    ) {
-        bind_state(rec.pass(Self::NAME, &self.kernel), STATE_OUT, out)
-            .buffer(TRACE_INFO, grid_info)
-            .buffer(WAVE_PATHS, paths)
-            .buffer(CAMERA_FILTER, filter)
-            .buffer(CAMERA_PATH, start)
+    pub fn record(&self, rec: &mut Recorder, io: CameraRaysIo<'_>, params: &CameraParams) {
+        bind_state(rec.pass(Self::NAME, &self.kernel), STATE_OUT, io.state)
+            .buffer(TRACE_INFO, io.grid_info)
+            .buffer(WAVE_PATHS, io.paths)
+            .buffer(CAMERA_FILTER, io.filter)
+            .buffer(CAMERA_PATH, io.start)
             .push(params)
             .dispatch(over_pixels(params.tile_size));
     }

@@ -18,7 +18,7 @@ mod surface_hit;
 
 pub(crate) use accumulate::Accumulate;
 pub(crate) use albedo::AlbedoIo;
-pub(crate) use camera_rays::CameraRays;
+pub(crate) use camera_rays::{CameraRays, CameraRaysIo};
 pub(crate) use classify::{Classify, ClassifyIo};
 pub(crate) use disc_count::DiscCount;
 pub(crate) use disc_emit::DiscEmit;
