@@ -38,7 +38,9 @@ fn one_render_writes_every_format_and_says_nothing_when_quiet() {
     let row = json(&folder.path().join("a.json"));
     assert_eq!(row["name"], "ball");
     assert_eq!(row["rays"]["camera"], 64 * 48);
-    for kind in ["shadow", "reflected", "refracted"] {
+    // A point file gets a key light and a fill light.
+    assert!(row["rays"]["shadow"].as_u64().expect("a count") > 300, "{row}");
+    for kind in ["reflected", "refracted"] {
         assert_eq!(row["rays"][kind], 0);
     }
     for time in ["trace_ms", "wall_ms", "build_ms"] {
@@ -113,7 +115,8 @@ fn channels_add_diagnostics_and_change_nothing_else() {
         assert!(if hit { (0.0..=1.0).contains(&fraction) } else { fraction == -1.0 });
     }
     let row = json(&folder.path().join("a.json"));
-    let rays = row["rays"]["camera"].as_f64().expect("a count");
+    let kinds = ["camera", "shadow", "reflected", "refracted"];
+    let rays: f64 = kinds.iter().map(|kind| row["rays"][kind].as_f64().expect("a count")).sum();
     let counted = row["tests_per_ray"].as_f64().expect("a number") * rays;
     let sum: f64 = tests.into_iter().map(f64::from).sum();
     assert!((sum - counted).abs() < 1e-6 * counted, "{sum} against {counted}");
