@@ -151,6 +151,17 @@ pub enum PlanError {
         /// Names that would do.
         known: String,
     },
+    /// A step so short that rays would never end.
+    #[error(
+        "a step of {step:e} scene units is too short: a ray through the scene's volumes would take up to \
+         {samples:.1e} samples, and 1.6e7 is the limit; lengthen objects.volume.step"
+    )]
+    TooManySamples {
+        /// The shortest step of a volume.
+        step: f32,
+        /// Along the longest ray.
+        samples: f64,
+    },
     /// A material asks for an attribute that the file lacks.
     #[error(
         "object '{name}': material.albedo is \"attribute:{attribute}\" but {file} has no such attribute; it \

@@ -18,6 +18,8 @@ const BOUNDARY_NEIGHBORS: usize = 32;
 const ONE_SIDE: f64 = 0.22;
 /// Turns of the plane away from the neighbour that is farthest beyond it.
 const TURNS: usize = 24;
+/// Samples that a ray may take.
+const MOST_SAMPLES: f64 = 16_000_000.0;
 /// Cells along the longest axis: more cost more memory than they save samples.
 const MOST_CELLS: f64 = 160.0;
 
@@ -164,6 +166,18 @@ pub(crate) fn plan_volumes(
             })
             .collect();
         volumes.add(index as u32, volume, radius as f32, points)?;
+    }
+    // Floats count no farther, so a ray of more samples would end too soon.
+    let corner = |of: fn(&VolumeInfo) -> [f32; 3], pick: fn(f32, f32) -> f32| {
+        let corners = volumes.infos.iter().map(of);
+        corners.reduce(|a, b| [0, 1, 2].map(|axis| pick(a[axis], b[axis]))).unwrap_or_default()
+    };
+    let (low, high) =
+        (corner(|info| info.grid.origin, f32::min), corner(|info| info.high, f32::max));
+    let across = [0, 1, 2].map(|axis| f64::from(high[axis]) - f64::from(low[axis]));
+    let samples = length(across) / f64::from(volumes.step);
+    if !volumes.infos.is_empty() && samples > MOST_SAMPLES {
+        return Err(PlanError::TooManySamples { step: volumes.step, samples });
     }
     Ok(volumes)
 }
