@@ -204,10 +204,14 @@ pub fn shared_data(file: &str) -> Option<PathBuf> {
     if path.exists() {
         return Some(path);
     }
-    // Not eprintln!: the test runner swallows what a passing test prints.
-    let line = format!("SKIPPED: {file}: {} is missing\n", path.display());
-    std::io::Write::write_all(&mut std::io::stderr(), line.as_bytes()).expect("stderr");
+    said(&format!("SKIPPED: {file}: {} is missing", path.display()));
     None
+}
+
+/// A line that is seen although the test passes: the test runner swallows what eprintln! prints.
+pub fn said(line: &str) {
+    let line = format!("{line}\n");
+    std::io::Write::write_all(&mut std::io::stderr(), line.as_bytes()).expect("stderr");
 }
 
 /// Background pixels all of whose four neighbours show a surface.

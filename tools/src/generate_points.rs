@@ -1,22 +1,15 @@
 //! `generate-points`: writes the point sets of the scenes.
 //!
-//! Every set is spread evenly over its surface by a golden-angle lattice: point i lies at the i-th
+//! Most sets are spread evenly over their surface by a golden-angle lattice: point i lies at the i-th
 //! step of one parameter, turned by the golden angle in the other. That is even whatever the ratio of
 //! the two, needs no random numbers, and gives the same points on every run. Sine and cosine come
 //! from the platform, so two platforms may differ in a coordinate's last bit.
 #![forbid(unsafe_code)]
 
-mod color;
-mod ply;
-mod sets;
-mod sphere;
-mod terrain;
-mod tube;
-mod vector;
-
 use clap::Parser;
-use ply::WriteError;
-use sets::Set;
+use pointillist_tools::files::{self, WriteError};
+use pointillist_tools::ply;
+use pointillist_tools::sets::{self, Set};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -56,5 +49,5 @@ fn run(arguments: &Arguments) -> Result<(), WriteError> {
     }
     let (Some(set), Some(path)) = (arguments.name, &arguments.output) else { return Ok(()) };
     let count = arguments.count.unwrap_or(set.usual_count());
-    ply::write(path, &set.comment(), &set.points(count))
+    files::write(path, &ply::encode(&set.comment(), &set.points(count)))
 }

@@ -1,9 +1,6 @@
 //! Points out, as binary little-endian PLY.
 
 use crate::vector::Vector;
-use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
 
 /// Points, and a colour each where the set is coloured.
 #[derive(Debug, Default)]
@@ -12,31 +9,6 @@ pub struct Points {
     pub positions: Vec<Vector>,
     /// Red, green and blue; none, or one a position.
     pub colors: Vec<[u8; 3]>,
-}
-
-/// A file that could not be written.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot write {path}: {source}; check that the folder exists and has room")]
-pub struct WriteError {
-    path: PathBuf,
-    source: io::Error,
-}
-
-/// Writes `points` to `path`, aside first and then renamed, so that no half file is left.
-///
-/// # Errors
-/// Whatever the file system says.
-pub fn write(path: &Path, comment: &str, points: &Points) -> Result<(), WriteError> {
-    let mut aside = path.as_os_str().to_owned();
-    aside.push(".part");
-    let aside = PathBuf::from(aside);
-    let written =
-        fs::write(&aside, encode(comment, points)).and_then(|()| fs::rename(&aside, path));
-    written.map_err(|source| {
-        // What is left of the file is of no use; that it cannot be removed is no second error.
-        let _ = fs::remove_file(&aside);
-        WriteError { path: path.to_owned(), source }
-    })
 }
 
 /// The bytes of the file.

@@ -3,7 +3,7 @@
 use crate::color::{oklch, srgb_bytes};
 use crate::ply::Points;
 use crate::vector::{Vector, scale};
-use crate::{sphere, terrain, tube};
+use crate::{figure, implicit, room, sphere, terrain, tube};
 use clap::ValueEnum;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -19,6 +19,16 @@ pub enum Set {
     Trefoil,
     /// Rolling land within a ring of hills, coloured by height.
     Terrain,
+    /// A hare that sits, about 1.5 high.
+    Hare,
+    /// A slab of 4 by 1 by 3 with rounded edges.
+    Slab,
+    /// A square of dunes, 8 by 8, level in the middle.
+    Dunes,
+    /// A flat square, 8 by 8.
+    Floor,
+    /// A room with things in it as two laser scanners find it, coloured.
+    Room,
 }
 
 impl Set {
@@ -29,6 +39,11 @@ impl Set {
             Self::Torus => 20_000,
             Self::Trefoil => 36_000,
             Self::Terrain => 56_000,
+            Self::Hare => 36_000,
+            Self::Slab => 24_000,
+            Self::Dunes => 40_000,
+            Self::Floor => 6_000,
+            Self::Room => 90_000,
         }
     }
 
@@ -46,11 +61,22 @@ impl Set {
 
     /// The points.
     pub fn points(self, count: u32) -> Points {
+        let plain = |positions| Points { positions, colors: Vec::new() };
         match self {
-            Self::Sphere => Points { positions: sphere::fibonacci(count), colors: Vec::new() },
+            Self::Sphere => plain(sphere::fibonacci(count)),
+            Self::Hare => {
+                let [low, high] = figure::HARE_BOX;
+                plain(implicit::even_points(figure::hare, low, high, count))
+            }
+            Self::Slab => {
+                let [low, high] = figure::SLAB_BOX;
+                plain(implicit::even_points(figure::slab, low, high, count))
+            }
+            Self::Dunes => plain(terrain::square(terrain::DUNES, terrain::dunes, count)),
+            Self::Floor => plain(terrain::square(terrain::DUNES, |_, _| 0.0, count)),
             Self::Torus => {
                 let ring = tube::even_points(|t| [t.cos(), 0.0, -t.sin()], 0.4, count);
-                Points { positions: ring.iter().map(|p| p.position).collect(), colors: Vec::new() }
+                plain(ring.iter().map(|p| p.position).collect())
             }
             Self::Trefoil => {
                 let knot = tube::even_points(trefoil, 0.175, count);
@@ -59,13 +85,15 @@ impl Set {
                     colors: knot.iter().map(|p| srgb_bytes(hue_circle(p.along))).collect(),
                 }
             }
-            Self::Terrain => {
-                let (positions, colors): (Vec<_>, Vec<_>) =
-                    terrain::points(count).into_iter().unzip();
-                Points { positions, colors: colors.into_iter().map(srgb_bytes).collect() }
-            }
+            Self::Terrain => coloured(terrain::points(count)),
+            Self::Room => coloured(room::points(count)),
         }
     }
+}
+
+fn coloured(points: Vec<(Vector, [f64; 3])>) -> Points {
+    let (positions, colors): (Vec<_>, Vec<_>) = points.into_iter().unzip();
+    Points { positions, colors: colors.into_iter().map(srgb_bytes).collect() }
 }
 
 /// The trefoil knot, about 2 across, its lobes in the plane of x and y, one lobe down.
@@ -101,7 +129,7 @@ mod tests {
     /// place of a coordinate is at most 2e-6 at 30, the land's radius.
     #[test]
     fn committed_point_files_are_what_this_program_writes() {
-        for set in [Set::Sphere, Set::Trefoil, Set::Terrain] {
+        for &set in Set::value_variants().iter().filter(|&&set| set != Set::Torus) {
             let (name, _) = set.name_and_help();
             let path =
                 Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/points/{name}.ply"));

@@ -1,6 +1,6 @@
-//! Rolling land with a ring of hills around it, y up.
+//! Rolling land with a ring of hills around it, and a square piece of dunes, y up.
 //!
-//! The points lie on a golden-angle spiral in the ground plane: evenly within `NEAR`, and with a
+//! The land's points lie on a golden-angle spiral in the ground plane: evenly within `NEAR`, and with a
 //! density that falls as distance^-2.5 beyond: nearly as fast as the ground that a pixel covers
 //! grows, seen from somewhere above the middle.
 
@@ -28,7 +28,7 @@ fn waves(waves: &[Wave], x: f64, z: f64) -> f64 {
 }
 
 /// 0 up to `from`, 1 beyond `to`, without a kink.
-fn smooth_step(from: f64, to: f64, value: f64) -> f64 {
+pub fn smooth_step(from: f64, to: f64, value: f64) -> f64 {
     let t = ((value - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
@@ -72,6 +72,36 @@ pub fn points(count: u32) -> Vec<(Vector, [f64; 3])> {
             let [x, z] = [distance * cos, distance * sin];
             let y = height(x, z);
             ([x, y, z], color(x, z))
+        })
+        .collect()
+}
+
+/// Half the side of the dunes.
+pub const DUNES: f64 = 4.0;
+const DUNE_WAVES: [Wave; 6] = [
+    ([0.9, 0.35], 0.16, 0.4),
+    ([-0.5, 1.1], 0.13, 2.0),
+    ([1.7, -0.9], 0.06, 4.4),
+    ([0.8, 2.3], 0.04, 2.6),
+    ([3.1, 1.2], 0.015, 1.1),
+    ([-1.4, 3.4], 0.012, 3.3),
+];
+
+/// Height of the dunes: level around the middle, where something can stand.
+pub fn dunes(x: f64, z: f64) -> f64 {
+    let level = smooth_step(0.35, 1.9, x.hypot(z));
+    level * waves(&DUNE_WAVES, x, z) + 0.30 * smooth_step(1.8, 5.5, x.hypot(z))
+}
+
+/// `count` points of the square from -`half` to `half` at the height of `ground`: a golden-angle
+/// lattice, which is even on a square too.
+pub fn square(half: f64, ground: impl Fn(f64, f64) -> f64, count: u32) -> Vec<Vector> {
+    (0..count)
+        .map(|i| {
+            let turns = (f64::from(i) + 0.5) * GOLDEN_TURN;
+            let x = half * (2.0 * (turns - turns.floor()) - 1.0);
+            let z = half * (2.0 * (f64::from(i) + 0.5) / f64::from(count) - 1.0);
+            [x, ground(x, z), z]
         })
         .collect()
 }

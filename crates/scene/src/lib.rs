@@ -11,6 +11,7 @@ mod document;
 mod error;
 mod keys;
 mod load;
+mod models;
 mod not_built;
 mod overrides;
 mod read;
@@ -25,6 +26,7 @@ mod reference_page;
 mod tests;
 
 pub use error::SceneError;
+pub use models::MODELS_VARIABLE;
 pub use scene::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
     ImageSettings, Light, Material, MaterialKind, Normals, Object, Polynomial, Primary, Projection,

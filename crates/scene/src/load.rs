@@ -3,6 +3,7 @@
 use crate::document::{Node, Origin, SyntaxError, Value, parse_file, parse_value};
 use crate::error::{Problem, Source};
 use crate::keys::{self, SCENE};
+use crate::models::{self, MODELS_VARIABLE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
@@ -10,6 +11,7 @@ use crate::{
     RayLoop, Refine, RenderSettings, Scene, SceneError, Stop, Surface, TextureAxis, Transform, Up,
     Volume, VolumeKernel,
 };
+use std::env;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -18,7 +20,8 @@ use std::path::{Path, PathBuf};
 const MAX_BYTES: u64 = 16 << 20;
 
 impl Scene {
-    /// Reads and checks a scene file, and that the files it names exist. `overrides` are `PATH=VALUE`
+    /// Reads and checks a scene file, and that the files it names exist: beside it or, where their
+    /// path begins with `models/`, below the folder of [`MODELS_VARIABLE`]. `overrides` are `PATH=VALUE`
     /// (`objects.0.surface.trust=0.7`), applied in order before the checks; paths in them too
     /// start from the scene file's folder.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
@@ -30,7 +33,8 @@ impl Scene {
                 format!("found byte 0x{byte:02x}, expected UTF-8; save the file as UTF-8");
             SceneError::at(path, &bytes, at, &message)
         })?;
-        let (document, scene) = parse(text, path, overrides)?;
+        let (document, mut scene) = parse(text, path, overrides)?;
+        models::find(&mut scene, models_folder().as_deref());
         files_exist(&document, &scene, &Source { file: path, text, overrides })?;
         Ok(scene)
     }
@@ -52,6 +56,7 @@ impl Scene {
         let source = Source { file: points, text: "", overrides };
         let mut document = point_file_document(points, up);
         let mut scene = checked(&mut document, Path::new(""), &source)?;
+        models::find(&mut scene, models_folder().as_deref());
         let written = document.get("objects").and_then(|list| list.items().first()?.get("points"));
         // The document holds text; the path itself may hold bytes that are not UTF-8.
         if let (Some(Origin::Given), [object, ..]) =
@@ -113,14 +118,22 @@ fn checked(document: &mut Node, folder: &Path, source: &Source<'_>) -> Result<Sc
     }
 }
 
+/// The folder that the environment names for models.
+fn models_folder() -> Option<PathBuf> {
+    env::var_os(MODELS_VARIABLE).filter(|folder| !folder.is_empty()).map(PathBuf::from)
+}
+
 /// Every file that the scene names is there: point files and images.
 fn files_exist(document: &Node, scene: &Scene, source: &Source<'_>) -> Result<(), SceneError> {
     let nodes = document.get("objects").map_or(&[][..], Node::items);
     let mut problems = Vec::new();
-    let mut require = |file: &Path, what: &str, origin: Origin, path: String| {
-        let Some(message) = what_is_missing(file, what) else { return };
-        // A point file rendered directly is named by the message already.
-        let path = if origin == Origin::Given { String::new() } else { path };
+    let models = models_folder();
+    let mut require = |file: &Path, written: &str, what: &str, origin: Origin, path: String| {
+        // A point file rendered directly is looked for where it says, and named by the message already.
+        let given = origin == Origin::Given;
+        let advice = if given { None } else { models::advice(written, models.as_deref()) };
+        let Some(message) = what_is_missing(file, what, advice) else { return };
+        let path = if given { String::new() } else { path };
         problems.push(Problem { origin, path, message });
     };
     if let Some(image) = &scene.background.environment {
@@ -128,33 +141,40 @@ fn files_exist(document: &Node, scene: &Scene, source: &Source<'_>) -> Result<()
             .get("background")
             .and_then(|table| table.get("environment"))
             .map_or(document.origin, |node| node.origin);
-        require(&image.path, "an image", origin, "background.environment".into());
+        let (path, key) = (&image.path, "background.environment".into());
+        require(path, &image.as_written, "an image", origin, key);
     }
     for (index, (object, node)) in scene.objects.iter().zip(nodes).enumerate() {
         let origin = node.get("points").map_or(node.origin, |points| points.origin);
-        require(&object.points, "a point file", origin, format!("objects[{index}].points"));
+        let (path, key) = (&object.points, format!("objects[{index}].points"));
+        require(path, &object.points_as_written, "a point file", origin, key);
         if let Albedo::Texture { file, .. } = &object.material.albedo {
             let origin = node
                 .get("material")
                 .and_then(|table| table.get("texture"))
                 .map_or(node.origin, |texture| texture.origin);
-            require(&file.path, "an image", origin, format!("objects[{index}].material.texture"));
+            let key = format!("objects[{index}].material.texture");
+            require(&file.path, &file.as_written, "an image", origin, key);
         }
     }
     if problems.is_empty() { Ok(()) } else { Err(SceneError::problems(problems, source)) }
 }
 
-/// Why a path is no file, if it is none.
-fn what_is_missing(file: &Path, expected: &str) -> Option<String> {
+/// Why a path is no file, if it is none. `advice` is for a model that is missing.
+fn what_is_missing(file: &Path, expected: &str, advice: Option<String>) -> Option<String> {
     let path = file.display();
     match fs::metadata(file) {
         Ok(meta) if meta.is_dir() => {
             Some(format!("found a folder at '{path}', expected {expected}; name the file"))
         }
         Ok(_) => None,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Some(format!(
-            "found no file at '{path}'; check the path, which starts from the scene file's folder"
-        )),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Some(match advice {
+            Some(advice) => format!("found no file at '{path}', {advice}"),
+            None => format!(
+                "found no file at '{path}'; check the path, which starts from the scene file's \
+                 folder"
+            ),
+        }),
         Err(error) => {
             Some(format!("'{path}' cannot be read ({error}); check the file and its permissions"))
         }

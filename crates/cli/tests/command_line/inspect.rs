@@ -124,3 +124,25 @@ fn images_that_are_missing_or_of_no_use_are_2() {
     folder.write("t.ppm.png", "");
     run_in(folder.path(), &render).fails_with(2, &["t.ppm.png"]);
 }
+
+/// Nothing in the folder of the scene, then a folder that the variable names.
+#[test]
+fn a_model_that_is_missing_is_2_and_named_with_variable_and_tool() {
+    let folder = Folder::new();
+    folder.write("s.toml", "[[objects]]\npoints = 'models/knot.ply'");
+    let check = |models: Option<&str>| {
+        let mut command = pointillist();
+        command.env_remove("POINTILLIST_MODELS").current_dir(folder.path());
+        if let Some(models) = models {
+            command.env("POINTILLIST_MODELS", models);
+        }
+        Ran::of(command.args(["check", "s.toml"]))
+    };
+    let words = ["s.toml:2:10: objects[0].points:", "'models/knot.ply'", "tools/fetch-models"];
+    check(None).fails_with(2, &words).fails_with(2, &["POINTILLIST_MODELS is not set"]);
+    check(Some("")).fails_with(2, &["POINTILLIST_MODELS is not set"]);
+    check(Some("all")).fails_with(2, &words).fails_with(2, &["'all', the folder that POINTILLIST"]);
+    std::fs::create_dir_all(folder.path().join("all/deep")).expect("a folder");
+    folder.write("all/deep/knot.ply", "");
+    check(Some("all")).succeeds();
+}
