@@ -103,8 +103,9 @@ fn sampled_reflection_and_soft_shadows_are_the_same_to_the_bit() {
 }
 
 #[test]
-fn refined_and_blended_surfaces_scatter_the_same_to_the_bit() {
-    for surface in ["refine = \"project\", polynomial = \"incomplete\"", "normals = \"blended\""] {
+fn refined_surfaces_and_single_normals_scatter_the_same_to_the_bit() {
+    for surface in ["refine = \"project\", polynomial = \"incomplete\"", "normals = \"polynomial\""]
+    {
         let text = format!("[image]\nsize = [96, 72]\n{VIEW}{OBJECTS}")
             .replace("material =", &format!("surface = {{ {surface} }}\nmaterial ="));
         let plan = plan_of(&text, &sets());

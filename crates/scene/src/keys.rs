@@ -482,9 +482,9 @@ pub(crate) static SURFACE: Table = Table {
         key(
             "normals",
             Kind::Choice(&["polynomial", "blended"]),
-            Value("\"polynomial\""),
-            "Normal of a hit: the hit polynomial's, or blended over all polynomials around it, which \
-             hides the seams between them. Refined hits have none.",
+            Value("\"blended\""),
+            "Normal of a hit: the hit polynomial's, as in the paper, or blended over all polynomials \
+             around it, which leaves no seams between them. Refined hits have none to blend.",
         ),
     ],
 };

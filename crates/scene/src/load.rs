@@ -192,7 +192,7 @@ fn point_file_document(points: &Path, up: Up) -> Node {
         "{{ background = {{ color = [0.18, 0.18, 0.18] }}, lights = [\
          {{ kind = \"directional\", direction = {key}, irradiance = [2.6, 2.6, 2.6] }},\
          {{ kind = \"directional\", direction = {fill}, irradiance = [0.7, 0.7, 0.7] }}\
-         ], objects = [{{ points = {}, surface = {{ normals = \"blended\" }} }}] }}",
+         ], objects = [{{ points = {} }}] }}",
         crate::settings::quoted(&points.to_string_lossy())
     );
     parse_value(&text, Origin::Given).unwrap_or_else(|| unreachable!("not TOML: {text}"))

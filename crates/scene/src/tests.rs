@@ -62,7 +62,7 @@ trust = 0.75
 refine = "project"
 tolerance = 2e-5
 max_iterations = 12
-normals = "blended"
+normals = "polynomial"
 drop_isolated = 3.5
 weight_width = 1.5
 close_gaps = false
@@ -211,7 +211,7 @@ fn every_built_key_is_read() {
             polynomial: Polynomial::Incomplete,
             feature_size: FeatureSize::Constant(0.25),
             trust: 0.75,
-            normals: Normals::Blended,
+            normals: Normals::Polynomial,
             drop_isolated: 3.5,
             weight_width: 1.5,
             close_gaps: false,
@@ -313,7 +313,7 @@ fn what_is_left_out_is_the_contracts_default() {
         polynomial: Polynomial::Full,
         feature_size: FeatureSize::Adaptive,
         trust: 0.6,
-        normals: Normals::Polynomial,
+        normals: Normals::Blended,
         drop_isolated: 0.0,
         weight_width: 1.0,
         close_gaps: true,
