@@ -1,6 +1,6 @@
 //! `info`, `check`, `schema`: results alone on stdout.
 
-use crate::{Folder, ply, pointillist, run_in, sphere};
+use crate::{Folder, Ran, ply, pointillist, run_in, sphere};
 use serde_json::{Value, json};
 use std::process::Stdio;
 
@@ -143,6 +143,6 @@ fn a_model_that_is_missing_is_2_and_named_with_variable_and_tool() {
     check(Some("")).fails_with(2, &["POINTILLIST_MODELS is not set"]);
     check(Some("all")).fails_with(2, &words).fails_with(2, &["'all', the folder that POINTILLIST"]);
     std::fs::create_dir_all(folder.path().join("all/deep")).expect("a folder");
-    folder.write("all/deep/knot.ply", "");
+    folder.write("all/deep/knot.ply", &sphere(100));
     check(Some("all")).succeeds();
 }
