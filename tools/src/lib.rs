@@ -4,6 +4,7 @@
 pub mod color;
 pub mod figure;
 pub mod files;
+pub mod filling;
 pub mod implicit;
 pub mod noise;
 pub mod ply;

@@ -9,6 +9,8 @@ pub struct Points {
     pub positions: Vec<Vector>,
     /// Red, green and blue; none, or one a position.
     pub colors: Vec<[u8; 3]>,
+    /// Names and values of further numbers, one value a position.
+    pub attributes: Vec<(&'static str, Vec<f32>)>,
 }
 
 /// The bytes of the file.
@@ -20,9 +22,11 @@ pub fn encode(comment: &str, points: &Points) -> Vec<u8> {
     } else {
         ""
     };
+    let attributes: String =
+        points.attributes.iter().map(|(name, _)| format!("property float {name}\n")).collect();
     let header = format!(
         "ply\nformat binary_little_endian 1.0\ncomment {comment}\nelement vertex {}\n\
-         property float x\nproperty float y\nproperty float z\n{colors}end_header\n",
+         property float x\nproperty float y\nproperty float z\n{colors}{attributes}end_header\n",
         points.positions.len(),
     );
     let mut bytes = header.into_bytes();
@@ -33,6 +37,9 @@ pub fn encode(comment: &str, points: &Points) -> Vec<u8> {
             bytes.extend((coordinate as f32).to_le_bytes());
         }
         bytes.extend(points.colors.get(i).into_iter().flatten());
+        for (_, values) in &points.attributes {
+            bytes.extend(values[i].to_le_bytes());
+        }
     }
     bytes
 }

@@ -3,7 +3,7 @@
 use crate::color::{oklch, srgb_bytes};
 use crate::ply::Points;
 use crate::vector::{Vector, scale};
-use crate::{figure, implicit, room, sphere, terrain, tube};
+use crate::{figure, filling, implicit, room, sphere, terrain, tube};
 use clap::ValueEnum;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -27,6 +27,10 @@ pub enum Set {
     Dunes,
     /// A flat square, 8 by 8.
     Floor,
+    /// A cloud of smoke about 2 across, in whirls, with its `density`.
+    Smoke,
+    /// The hare with points inside of it, whose `skin` is 0, and a `density`.
+    FilledHare,
     /// A room with things in it as two laser scanners find it, coloured.
     Room,
 }
@@ -44,6 +48,8 @@ impl Set {
             Self::Dunes => 40_000,
             Self::Floor => 6_000,
             Self::Room => 90_000,
+            Self::Smoke => 40_000,
+            Self::FilledHare => 44_000,
         }
     }
 
@@ -61,7 +67,7 @@ impl Set {
 
     /// The points.
     pub fn points(self, count: u32) -> Points {
-        let plain = |positions| Points { positions, colors: Vec::new() };
+        let plain = |positions| Points { positions, ..Points::default() };
         match self {
             Self::Sphere => plain(sphere::fibonacci(count)),
             Self::Hare => {
@@ -83,17 +89,20 @@ impl Set {
                 Points {
                     positions: knot.iter().map(|p| p.position).collect(),
                     colors: knot.iter().map(|p| srgb_bytes(hue_circle(p.along))).collect(),
+                    ..Points::default()
                 }
             }
             Self::Terrain => coloured(terrain::points(count)),
             Self::Room => coloured(room::points(count)),
+            Self::Smoke => filling::smoke(count),
+            Self::FilledHare => filling::filled_hare(count),
         }
     }
 }
 
 fn coloured(points: Vec<(Vector, [f64; 3])>) -> Points {
     let (positions, colors): (Vec<_>, Vec<_>) = points.into_iter().unzip();
-    Points { positions, colors: colors.into_iter().map(srgb_bytes).collect() }
+    Points { positions, colors: colors.into_iter().map(srgb_bytes).collect(), ..Points::default() }
 }
 
 /// The trefoil knot, about 2 across, its lobes in the plane of x and y, one lobe down.
@@ -137,19 +146,21 @@ mod tests {
             let points = set.points(set.usual_count());
             let fresh = encode(&set.comment(), &points);
             assert_eq!(committed.len(), fresh.len(), "{name}: length");
-            let record = if points.colors.is_empty() { 12 } else { 15 };
+            let colors = if points.colors.is_empty() { 0 } else { 3 };
+            let record = 12 + colors + 4 * points.attributes.len();
             let header = fresh.len() - record * points.positions.len();
             assert_eq!(committed[..header], fresh[..header], "{name}: header");
             let records = committed[header..].chunks(record).zip(fresh[header..].chunks(record));
             for (place, (old, new)) in records.enumerate() {
-                for at in [0, 4, 8] {
+                let attributes = (0..points.attributes.len()).map(|i| 12 + colors + 4 * i);
+                for at in [0, 4, 8].into_iter().chain(attributes) {
                     let value = |bytes: &[u8]| {
                         f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]])
                     };
                     let difference = (value(old) - value(new)).abs();
                     assert!(difference <= 4e-6, "{name}: point {place} differs by {difference}");
                 }
-                for (a, b) in old[12..].iter().zip(&new[12..]) {
+                for (a, b) in old[12..12 + colors].iter().zip(&new[12..12 + colors]) {
                     assert!(a.abs_diff(*b) <= 1, "{name}: colour of point {place}");
                 }
             }
