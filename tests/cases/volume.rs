@@ -5,6 +5,7 @@ use harness::{
     Bench, assert_same_bits, assert_same_film, fibonacci_sphere, grid_points, plan_of, random,
     render_twin, set_of, with_attribute,
 };
+use kernels::layout;
 use points::PointSet;
 
 const CAMERA: &str = "
@@ -300,4 +301,41 @@ transfer = [{ value = 1.0, color = [1.0, 1.0, 1.0], extinction = 1.0 }]
         .count();
     assert!(on_skin > 1_980, "{on_skin} of 2000 points of the skin");
     assert!(plan.cloud.points.len() < 2_200, "{} points", plan.cloud.points.len());
+}
+
+/// A map of colours shows what stops written out from it would: its ends, its middle, and the extinction, linear
+/// over the attribute's own range.
+#[test]
+fn a_color_map_is_a_transfer_function() {
+    let set = cloud(4_000);
+    let with = |keys: &str| {
+        let scene = volume_scene("[32, 24]", 0.2, 0.05).replace(TRANSFER, keys);
+        plan_of(&scene, std::slice::from_ref(&set))
+    };
+    let values = || set.attribute("s").expect("values").iter();
+    let (low, high) = (values().fold(9.0, f64::min), values().fold(-9.0, f64::max));
+    let stops = with("color_map = \"magma\"\nextinction = [0.0, 5.0]").volumes.stops;
+    let (first, last) = (stops[0], stops[stops.len() - 1]);
+    assert_eq!([first.value, last.value], [low as f32, high as f32]);
+    assert_eq!(
+        [first.extinction, stops[stops.len() / 2].extinction, last.extinction],
+        [0.0, 2.5, 5.0]
+    );
+    let byte = |stop: layout::VolumeStop| stop.color.map(|c| film::srgb_byte(c));
+    assert_eq!([byte(first), byte(last)], [[0, 0, 4], [252, 253, 191]]);
+
+    let gray = "color_map = \"gray\"\nvalue_range = [0.2, 0.8]\nextinction = 3";
+    let plan = with(gray);
+    let stops: String = (plan.volumes.stops.iter())
+        .map(|s| {
+            format!(
+                "{{ value = {:?}, color = {:?}, extinction = {:?} }},\n",
+                s.value, s.color, s.extinction
+            )
+        })
+        .collect();
+    let bench = Bench::open();
+    let film = bench.render(&plan).film;
+    assert_same_film("stops", &film, &bench.render(&with(&format!("transfer = [\n{stops}]"))).film);
+    assert!(film.color.iter().any(|c| c[0] > 0.1 && c[0] == c[1] && c[1] == c[2]));
 }

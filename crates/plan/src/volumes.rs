@@ -1,12 +1,13 @@
 //! Volumes: which points carry a surface, and the grid in which a sample finds the points in its reach
-//! (\[T\] §6; docs/method.md, section 7).
+//! (\[T\] §6; docs/method.md, section 8).
 
 use crate::PlanError;
+use crate::colors::mapped;
 use kernels::layout::{
     GridInfo, Point, VOLUME_SHEPARD, VOLUME_SUM, VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
 };
 use points::{Cloud, NeighborSearch, ObjectPoints, PointSet};
-use scene::{Boundary, Object, Scene, Volume, VolumeKernel};
+use scene::{Boundary, ColorMap, Object, Scene, Transfer, Volume, VolumeKernel};
 use std::sync::Arc;
 
 /// Neighbours that the spacing of a volume's points is measured by.
@@ -20,6 +21,9 @@ const ONE_SIDE: f64 = 0.22;
 const TURNS: usize = 24;
 /// Cells along the longest axis: more cost more memory than they save samples.
 const MOST_CELLS: f64 = 160.0;
+
+/// Stops that a map of colours becomes.
+const MAP_STOPS: u32 = 65;
 
 /// All volumes of a scene, as plain data.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -189,21 +193,17 @@ impl Volumes {
         self.step = self.step.min(volume.step.map_or(0.25 * radius, |step| step as f32));
         let (grid, high) = grid_over(&points, radius);
         let (first_cell, first_stop) = (self.cells.len() as u32, self.stops.len() as u32);
-        self.stops.extend(volume.transfer.iter().map(|stop| VolumeStop {
-            color: stop.color.map(|c| c as f32),
-            extinction: stop.extinction as f32,
-            value: stop.value as f32,
-            pad: [0; 3],
-        }));
+        self.stops.extend(stops_of(&volume.transfer, &points));
         let kernel = match volume.kernel {
             VolumeKernel::Shepard => VOLUME_SHEPARD,
-            VolumeKernel::Sum => VOLUME_SUM,
+            // No scene asks for particles before they are built.
+            VolumeKernel::Sum | VolumeKernel::Sph { .. } => VOLUME_SUM,
         };
         let info = VolumeInfo {
             grid,
             first_cell,
             first_stop,
-            stop_count: volume.transfer.len() as u32,
+            stop_count: self.stops.len() as u32 - first_stop,
             kernel,
             square_radius: radius * radius,
             inverse_width: 1.0 / (2.0 * smoothing),
@@ -298,6 +298,47 @@ impl Volumes {
             || (low <= least.value && least.extinction > 0.0)
             || (high >= last.value && last.extinction > 0.0)
     }
+}
+
+/// A transfer function as stops.
+fn stops_of(transfer: &Transfer, points: &[VolumePoint]) -> Vec<VolumeStop> {
+    match transfer {
+        Transfer::Stops(stops) => stops
+            .iter()
+            .map(|stop| VolumeStop {
+                color: stop.color.map(|c| c as f32),
+                extinction: stop.extinction as f32,
+                value: stop.value as f32,
+                pad: [0; 3],
+            })
+            .collect(),
+        Transfer::Map { color_map, range, extinction } => {
+            let [low, high] = range.unwrap_or_else(|| own_range(points));
+            map_stops(*color_map, [low, high], *extinction)
+        }
+    }
+}
+
+/// From the lowest scalar to the highest.
+fn own_range(points: &[VolumePoint]) -> [f64; 2] {
+    let scalars = || points.iter().map(|point| point.scalar);
+    let low = scalars().fold(f32::INFINITY, f32::min);
+    let high = scalars().fold(f32::NEG_INFINITY, f32::max);
+    if low <= high { [f64::from(low), f64::from(high)] } else { [0.0, 1.0] }
+}
+
+/// Even stops on a map; the middle of the map alone where all scalars are one.
+fn map_stops(map: ColorMap, [low, high]: [f64; 2], extinction: [f64; 2]) -> Vec<VolumeStop> {
+    let stop = |part: f64| VolumeStop {
+        color: mapped(map, part),
+        extinction: (extinction[0] + part * (extinction[1] - extinction[0])) as f32,
+        value: (low + part * (high - low)) as f32,
+        pad: [0; 3],
+    };
+    if low >= high {
+        return vec![stop(0.5)];
+    }
+    (0..MAP_STOPS).map(|i| stop(f64::from(i) / f64::from(MAP_STOPS - 1))).collect()
 }
 
 /// Cells of an edge of the radius, over the points' bounding box grown by it, and the highest corner of that.

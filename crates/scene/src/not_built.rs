@@ -32,6 +32,12 @@ const fn value(path: &'static str, when: When, instead: &'static str) -> NotBuil
 pub(crate) const NOT_BUILT: &[NotBuilt] = &[
     value("render.loop", When::Is(&["queue"]), "use \"images\" or \"auto\""),
     key("objects.filter"),
+    value("objects.volume.kernel", When::Is(&["sph"]), "use \"shepard\" or \"sum\""),
+    value(
+        "objects.volume.mode",
+        When::Is(&["maximum", "average", "isosurface"]),
+        "use \"emission\"",
+    ),
 ];
 
 /// The entry of a key, if it has one.
