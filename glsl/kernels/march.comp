@@ -2,7 +2,7 @@
 // paper).
 //
 // reads   the ray state, hits      where each ray begins and ends
-//         volumes, their cells, points and stops
+//         volumes, their cells, points, lengths and stops
 // writes  march            where each ray goes on in the next pass
 //         paths            what the volumes emit towards the camera, and what they leave of the throughput
 //         live             how many rays are not done
@@ -66,6 +66,20 @@ vec2 way_through(Ray ray, uint path, float end) {
     return way;
 }
 
+// What a ray shows of the scalar that stands for its whole way: a layer of one radius, or all of it.
+March shown(VolumeInfo volume, March march) {
+    float scalar = march.color.x;
+    float way = march.color.y;
+    bool reached = way > 0.0;
+    bool mean = volume.mode == VOLUME_AVERAGE;
+    vec4 seen = transfer(volume, mean ? scalar / (reached ? way : 1.0) : scalar);
+    float through = exp_negative(-(seen.w * (mean ? way : sqrt(volume.square_radius))));
+    through = through < FEWEST ? 0.0 : through;
+    march.transmittance = reached ? through : 1.0;
+    march.color = reached ? (1.0 - through) * seen.xyz : vec3(0.0);
+    return march;
+}
+
 void finish(uint at, uint path, March march) {
 #ifdef SHADOWS
     light_sums[at].arriving *= march.transmittance;
@@ -122,11 +136,21 @@ void main() {
         uvec2 range = row_left > 0u ? row_points(volume, low, high, march.row) : uvec2(0u);
         uint first = range.x + march.cursor;
         uint count = min(range.y - first, AT_ONCE);
-        for (uint i = 0u; i < count; ++i) {
+        bool particles = volume.kernel == VOLUME_SPH;
+        uint gaussians = particles ? 0u : count;
+        for (uint i = 0u; i < gaussians; ++i) {
             VolumePoint point = volume_points[first + i];
             vec3 y = point.position - x;
             float square = dot3(y, y);
             float weight = square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
+            march.numerator += weight * point.scalar;
+            march.denominator += weight;
+        }
+        uint splines = particles ? count : 0u;
+        for (uint i = 0u; i < splines; ++i) {
+            VolumePoint point = volume_points[first + i];
+            vec3 y = point.position - x;
+            float weight = spline(sqrt(dot3(y, y)) * inverse_lengths[first + i]);
             march.numerator += weight * point.scalar;
             march.denominator += weight;
         }
@@ -137,9 +161,16 @@ void main() {
 
         if (march.row >= rows) {
             bool reached = march.denominator > 0.0;
-            float divisor = volume.kernel == VOLUME_SUM ? 1.0 : (reached ? march.denominator : 1.0);
-            vec4 seen = transfer(volume, march.numerator / divisor);
-            float extinction = reached ? seen.w : 0.0;
+            float divisor = volume.kernel == VOLUME_SHEPARD && reached ? march.denominator : 1.0;
+            float scalar = march.numerator / divisor;
+            bool emission = volume.mode == VOLUME_EMISSION;
+            bool greater = !(march.color.y > 0.0) || scalar > march.color.x;
+            float greatest = greater ? scalar : march.color.x;
+            float integral = march.color.x + length_of_step * scalar;
+            vec2 whole = vec2(volume.mode == VOLUME_MAXIMUM ? greatest : integral, march.color.y + length_of_step);
+            march.color.xy = reached && !emission ? whole : march.color.xy;
+            vec4 seen = transfer(volume, scalar);
+            float extinction = reached && emission ? seen.w : 0.0;
             march.sample_color += extinction * seen.xyz;
             march.sample_extinction += extinction;
             march.numerator = 0.0;
@@ -164,6 +195,6 @@ void main() {
     bool done = march.place >= samples;
     march.state = done ? 2u : 1u;
     marches[at] = march;
-    if (done) finish(at, path, march);
+    if (done) finish(at, path, volumes[0].mode == VOLUME_EMISSION ? march : shown(volumes[0], march));
     else atomicAdd(live, 1u);
 }

@@ -32,11 +32,10 @@ const fn value(path: &'static str, when: When, instead: &'static str) -> NotBuil
 pub(crate) const NOT_BUILT: &[NotBuilt] = &[
     value("render.loop", When::Is(&["queue"]), "use \"images\" or \"auto\""),
     key("objects.filter"),
-    value("objects.volume.kernel", When::Is(&["sph"]), "use \"shepard\" or \"sum\""),
     value(
         "objects.volume.mode",
-        When::Is(&["maximum", "average", "isosurface"]),
-        "use \"emission\"",
+        When::Is(&["isosurface"]),
+        "use \"emission\", \"maximum\" or \"average\"",
     ),
 ];
 
