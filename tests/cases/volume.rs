@@ -336,7 +336,7 @@ fn a_color_map_is_a_transfer_function() {
         [first.extinction, stops[stops.len() / 2].extinction, last.extinction],
         [0.0, 2.5, 5.0]
     );
-    let byte = |stop: layout::VolumeStop| stop.color.map(|c| film::srgb_byte(c));
+    let byte = |stop: layout::VolumeStop| stop.color.map(film::srgb_byte);
     assert_eq!([byte(first), byte(last)], [[0, 0, 4], [252, 253, 191]]);
 
     let gray = "color_map = \"gray\"\nvalue_range = [0.2, 0.8]\nextinction = 3";

@@ -128,7 +128,7 @@ pub fn march<R: Real>(ray: &Ray<R>, end: R, media: &Media, volumes: &Volumes) ->
         for volume in &taking_part {
             let Some(scalar) = scalar_at(volume, volumes, x) else { continue };
             if volume.mode == VOLUME_MAXIMUM {
-                let greater = !(whole[1] > zero) || scalar > whole[0];
+                let greater = whole[1] <= zero || scalar > whole[0];
                 whole = [if greater { scalar } else { whole[0] }, whole[1] + length];
             } else if volume.mode == VOLUME_AVERAGE {
                 whole = [whole[0] + length * scalar, whole[1] + length];
