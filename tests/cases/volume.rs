@@ -6,9 +6,13 @@ use harness::{
     render_twin, set_of, shared_data, with_attribute,
 };
 use kernels::layout;
+use plan::{Plan, SceneImages};
 use points::PointSet;
 use reference::real::V3;
 use reference::volume;
+use scene::{Scene, Up};
+use std::path::Path;
+use std::sync::Arc;
 
 const CAMERA: &str = "
 [camera]
@@ -541,4 +545,17 @@ color_map = \"gray\"\nextinction = [0.0, 1.0]\nradius = 2.0\nsmoothing = 0.3\n";
     );
     // Values to 255 by quotients of sums of f32.
     assert!(count > 900.0 && (ours - exact).abs() < 1e-4 && apart < 1e-3);
+}
+
+/// A mode that shows one scalar of the whole ray does not add to another volume.
+#[test]
+fn a_mode_that_needs_the_only_volume_says_so() {
+    let object = "[[objects]]\npoints = \"cloud.ply\"\n[objects.volume]\nscalar = \"s\"\ncolor_map = \"gray\"\n\
+                  extinction = 1\n";
+    let text = format!("{object}mode = \"maximum\"\n{object}");
+    let scene = Scene::from_toml(&text, Path::new("s.toml"), &[]).expect("a valid scene");
+    let set = Arc::new(cloud(100));
+    let error = Plan::new(&scene, &[Arc::clone(&set), set], &SceneImages::default(), None, Up::Y)
+        .expect_err("two volumes");
+    assert!(error.to_string().contains("the scene's only volume, but there are 2"), "{error}");
 }
