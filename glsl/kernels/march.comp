@@ -2,7 +2,7 @@
 // paper).
 //
 // reads   the ray state, hits      where each ray begins and ends
-//         volumes, their cells, points and stops
+//         volumes, their cells, points, lengths and stops
 // writes  march            where each ray goes on in the next pass
 //         paths            what the volumes emit towards the camera, and what they leave of the throughput
 //         live             how many rays are not done
@@ -66,6 +66,38 @@ vec2 way_through(Ray ray, uint path, float end) {
     return way;
 }
 
+struct Sample {
+    vec3 x;
+    float length_of_step;
+};
+
+Sample sample_of(Ray ray, vec2 way, uint place) {
+    float begin = float(place) * params.step;
+    float length_of_step = min(params.step, (way.y - way.x) - begin);
+    return Sample(ray.origin + (way.x + (begin + 0.5 * length_of_step)) * ray.direction, length_of_step);
+}
+
+// Whether x is in the volume's grid, and anything may be seen from its cell.
+bool may_be_seen(VolumeInfo volume, vec3 x) {
+    vec3 cells_off = (x - volume.grid.origin) * volume.grid.inverse_edge;
+    bool inside = all(greaterThanEqual(cells_off, vec3(0.0))) && all(lessThan(cells_off, vec3(volume.grid.resolution)));
+    return inside && volume_cells[volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))].counts != 0u;
+}
+
+// What a ray shows of the scalar that stands for its whole way: a layer of one radius, or all of it.
+March shown(VolumeInfo volume, March march) {
+    float scalar = march.color.x;
+    float way = march.color.y;
+    bool reached = way > 0.0;
+    bool mean = volume.mode == VOLUME_AVERAGE;
+    vec4 seen = transfer(volume, mean ? scalar / (reached ? way : 1.0) : scalar);
+    float through = exp_negative(-(seen.w * (mean ? way : sqrt(volume.square_radius))));
+    through = through < FEWEST ? 0.0 : through;
+    march.transmittance = reached ? through : 1.0;
+    march.color = reached ? (1.0 - through) * seen.xyz : vec3(0.0);
+    return march;
+}
+
 void finish(uint at, uint path, March march) {
 #ifdef SHADOWS
     light_sums[at].arriving *= march.transmittance;
@@ -102,68 +134,97 @@ void main() {
     uint samples = uint(min(max(-floor(-(span / params.step)), 0.0), MOST_SAMPLES));
     uint work_left = params.work;
 
+    // Drivers without real branches run what is under an if for every ray: loops of one turn or none are passed over.
+    bool alone = params.volume_count == 1u;
+    VolumeInfo volume = volumes[march.volume];
     while (march.place < samples && work_left > 0u) {
-        float begin = float(march.place) * params.step;
-        float length_of_step = min(params.step, span - begin);
-        vec3 x = ray.origin + (way.x + (begin + 0.5 * length_of_step)) * ray.direction;
-        VolumeInfo volume = volumes[march.volume];
-        GridInfo grid = volume.grid;
-        vec3 cells_off = (x - grid.origin) * grid.inverse_edge;
-        bool counts = takes_part(volume, path) && all(greaterThanEqual(cells_off, vec3(0.0)))
-            && all(lessThan(cells_off, vec3(grid.resolution)));
-        uvec3 cell = cell_of(grid, x);
-        counts = counts && volume_cells[volume.first_cell + cell_id(grid, cell)].counts != 0u;
+        Sample at_place = sample_of(ray, way, march.place);
+        bool fresh = alone && march.row == 0u && march.cursor == 0u;
+        while (fresh && march.place < samples && work_left > 0u && !may_be_seen(volume, at_place.x)) {
+            ++march.place;
+            --work_left;
+            at_place = sample_of(ray, way, march.place);
+        }
+        bool counts = march.place < samples && takes_part(volume, path) && may_be_seen(volume, at_place.x);
+        vec3 x = at_place.x;
         float reach = sqrt(volume.square_radius);
         uvec3 low, high;
-        cells_around(grid, x, reach, low, high);
+        cells_around(volume.grid, x, reach, low, high);
         uint rows = counts ? (high.y - low.y + 1u) * (high.z - low.z + 1u) : 0u;
+        bool particles = volume.kernel == VOLUME_SPH;
 
-        uint row_left = march.row < rows ? 1u : 0u;
-        uvec2 range = row_left > 0u ? row_points(volume, low, high, march.row) : uvec2(0u);
-        uint first = range.x + march.cursor;
-        uint count = min(range.y - first, AT_ONCE);
-        for (uint i = 0u; i < count; ++i) {
-            VolumePoint point = volume_points[first + i];
-            vec3 y = point.position - x;
-            float square = dot3(y, y);
-            float weight = square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
-            march.numerator += weight * point.scalar;
-            march.denominator += weight;
+        while (march.row < rows && work_left > 0u) {
+            uvec2 range = row_points(volume, low, high, march.row);
+            uint first = range.x + march.cursor;
+            uint count = min(range.y - first, AT_ONCE);
+            uint gaussians = particles ? 0u : count;
+            for (uint i = 0u; i < gaussians; ++i) {
+                VolumePoint point = volume_points[first + i];
+                vec3 y = point.position - x;
+                float square = dot3(y, y);
+                float weight =
+                    square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
+                march.numerator += weight * point.scalar;
+                march.denominator += weight;
+            }
+            uint splines = particles ? count : 0u;
+            for (uint i = 0u; i < splines; ++i) {
+                VolumePoint point = volume_points[first + i];
+                vec3 y = point.position - x;
+                float weight = spline(sqrt(dot3(y, y)) * inverse_lengths[first + i]);
+                march.numerator += weight * point.scalar;
+                march.denominator += weight;
+            }
+            bool row_ends = first + count >= range.y;
+            march.cursor = row_ends ? 0u : march.cursor + count;
+            march.row += row_ends ? 1u : 0u;
+            work_left -= min(work_left, count + 2u);
         }
-        bool row_ends = first + count >= range.y;
-        march.cursor = row_ends ? 0u : march.cursor + count;
-        march.row += row_left > 0u && row_ends ? 1u : 0u;
-        work_left -= min(work_left, count + 2u);
+        work_left -= min(work_left, 2u);
 
-        if (march.row >= rows) {
+        uint ends = march.row >= rows && march.place < samples ? 1u : 0u;
+        while (ends > 0u) {
+            --ends;
             bool reached = march.denominator > 0.0;
-            float divisor = volume.kernel == VOLUME_SUM ? 1.0 : (reached ? march.denominator : 1.0);
-            vec4 seen = transfer(volume, march.numerator / divisor);
-            float extinction = reached ? seen.w : 0.0;
+            float divisor = volume.kernel == VOLUME_SHEPARD && reached ? march.denominator : 1.0;
+            float scalar = march.numerator / divisor;
+            bool emission = volume.mode == VOLUME_EMISSION;
+            bool greater = !(march.color.y > 0.0) || scalar > march.color.x;
+            float greatest = greater ? scalar : march.color.x;
+            float integral = march.color.x + at_place.length_of_step * scalar;
+            vec2 whole =
+                vec2(volume.mode == VOLUME_MAXIMUM ? greatest : integral, march.color.y + at_place.length_of_step);
+            march.color.xy = reached && !emission ? whole : march.color.xy;
+            vec4 seen = transfer(volume, scalar);
+            float extinction = reached && emission ? seen.w : 0.0;
             march.sample_color += extinction * seen.xyz;
             march.sample_extinction += extinction;
             march.numerator = 0.0;
             march.denominator = 0.0;
             march.row = 0u;
             ++march.volume;
-        }
-        if (march.volume >= params.volume_count) {
-            bool emits = march.sample_extinction > 0.0;
-            float through = exp_negative(-(march.sample_extinction * length_of_step));
+            bool last = march.volume >= params.volume_count;
+            bool emits = last && march.sample_extinction > 0.0;
+            float through = exp_negative(-(march.sample_extinction * at_place.length_of_step));
             vec3 color = march.sample_color / (emits ? march.sample_extinction : 1.0);
             march.color += emits ? (march.transmittance * (1.0 - through)) * color : vec3(0.0);
             march.transmittance *= emits ? through : 1.0;
-            march.sample_color = vec3(0.0);
-            march.sample_extinction = 0.0;
-            march.volume = 0u;
-            bool ends = march.transmittance < FEWEST;
-            march.transmittance = ends ? 0.0 : march.transmittance;
-            march.place = ends ? samples : march.place + 1u;
+            march.sample_color = last ? vec3(0.0) : march.sample_color;
+            march.sample_extinction = last ? 0.0 : march.sample_extinction;
+            march.volume = last ? 0u : march.volume;
+            bool dark = march.transmittance < FEWEST;
+            march.transmittance = dark ? 0.0 : march.transmittance;
+            march.place = last ? (dark ? samples : march.place + 1u) : march.place;
+        }
+        uint other = alone ? 0u : 1u;
+        while (other > 0u) {
+            --other;
+            volume = volumes[march.volume];
         }
     }
     bool done = march.place >= samples;
     march.state = done ? 2u : 1u;
     marches[at] = march;
-    if (done) finish(at, path, march);
+    if (done) finish(at, path, volumes[0].mode == VOLUME_EMISSION ? march : shown(volumes[0], march));
     else atomicAdd(live, 1u);
 }

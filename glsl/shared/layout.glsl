@@ -100,6 +100,12 @@
 // How a volume's points are blended.
 #define VOLUME_SHEPARD 0
 #define VOLUME_SUM 1
+#define VOLUME_SPH 2
+
+// What a ray through a volume shows.
+#define VOLUME_EMISSION 0
+#define VOLUME_MAXIMUM 1
+#define VOLUME_AVERAGE 2
 
 #define MOST_CROSSINGS 1024 // surfaces a path may pass through that do not change its medium
 #define CHANNELS_ALL 7 // a path's channels: 1 red, 2 green, 4 blue
@@ -111,6 +117,7 @@
 #define MARCH_POINTS 35
 #define MARCH_STOPS 36
 #define MARCH_STATE 37
+#define MARCH_LENGTHS 38
 #define SHADE_IMAGES 30
 #define SHADE_TEXELS 31
 
@@ -363,7 +370,7 @@ struct VolumeInfo {      // 80 bytes
     uint object;         // 56
     uint bounded;        // 60  1: it counts inside the object's surface alone
     vec3 high;           // 64  of the box, whose lowest corner is the grid's
-    uint pad;            // 76
+    uint mode;           // 76  VOLUME_EMISSION and so on; all others: the scene's only volume
 };
 
 struct VolumeCell {      // 8 bytes
@@ -373,7 +380,7 @@ struct VolumeCell {      // 8 bytes
 
 struct VolumePoint {     // 16 bytes
     vec3 position;       //  0  centred scene space
-    float scalar;        // 12
+    float scalar;        // 12  of a particle, A (m / rho) / (pi h^3)
 };
 
 // Of a transfer function, ascending in value.
@@ -386,7 +393,8 @@ struct VolumeStop {      // 32 bytes
 
 // How far a ray has marched through volumes.
 struct March {           // 64 bytes
-    vec3 color;          //  0  emitted towards its start so far
+    vec3 color;          //  0  emitted towards its start so far; of other modes than emission, the greatest
+                         //     scalar or the integral of all, and the length in reach
     float transmittance; // 12
     vec3 sample_color;   // 16  of this sample, each volume's by its extinction
     float sample_extinction; // 28

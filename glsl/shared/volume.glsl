@@ -10,6 +10,7 @@
 layout(std430, binding = MARCH_VOLUMES) readonly buffer Volumes { VolumeInfo volumes[]; };
 layout(std430, binding = MARCH_CELLS) readonly buffer VolumeCells { VolumeCell volume_cells[]; };
 layout(std430, binding = MARCH_POINTS) readonly buffer VolumePoints { VolumePoint volume_points[]; };
+layout(std430, binding = MARCH_LENGTHS) readonly buffer Lengths { float inverse_lengths[]; };
 layout(std430, binding = MARCH_STOPS) readonly buffer Stops { VolumeStop stops[]; };
 
 // Where a ray is within a box: x > y, nowhere.
@@ -26,6 +27,13 @@ uvec2 row_points(VolumeInfo volume, uvec3 low, uvec3 high, uint row) {
     uvec2 yz = low.yz + uvec2(row % height, row / height);
     uint first = volume.first_cell + cell_id(volume.grid, uvec3(low.x, yz));
     return uvec2(volume_cells[first].first, volume_cells[first + (high.x - low.x) + 1u].first);
+}
+
+// Monaghan's cubic spline times pi h^3, at q = d / h: 1 - 3/2 q^2 + 3/4 q^3 below 1, (2 - q)^3 / 4 below 2.
+float spline(float q) {
+    float far = max(2.0 - q, 0.0);
+    float near = max(1.0 - q, 0.0);
+    return 0.25 * (far * far * far) - near * near * near;
 }
 
 // Colour and extinction of a scalar: linear between stops, constant beyond the outer ones.

@@ -202,10 +202,20 @@ constants! {
     MARCH_STOPS = 36;
     /// Binding of `march`: [`March`] by ray.
     MARCH_STATE = 37;
+    /// Binding of `march`: 1/h by point, if any volume has particles.
+    MARCH_LENGTHS = 38;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
     VOLUME_SHEPARD = 0;
     /// [`VolumeInfo::kernel`] of the weighted sum.
     VOLUME_SUM = 1;
+    /// [`VolumeInfo::kernel`] of particles with smoothing lengths of their own.
+    VOLUME_SPH = 2;
+    /// [`VolumeInfo::mode`]: emission and extinction along the way.
+    VOLUME_EMISSION = 0;
+    /// [`VolumeInfo::mode`]: the greatest scalar.
+    VOLUME_MAXIMUM = 1;
+    /// [`VolumeInfo::mode`]: the mean scalar.
+    VOLUME_AVERAGE = 2;
     /// Binding of `shade`: [`ImageInfo`]s.
     SHADE_IMAGES = 30;
     /// Binding of `shade`: a table of sRGB, and the texels of all images.
@@ -727,12 +737,12 @@ pub struct VolumeInfo {
     pub bounded: u32,
     /// Highest corner of the box, whose lowest is the grid's.
     pub high: [f32; 3],
-    /// Unused.
-    pub pad: u32,
+    /// What a ray shows: one of `VOLUME_EMISSION` and so on.
+    pub mode: u32,
 }
 gpu_layout!(VolumeInfo, 80, {
     grid: 0, first_cell: 32, first_stop: 36, stop_count: 40, kernel: 44, square_radius: 48,
-    inverse_width: 52, object: 56, bounded: 60, high: 64, pad: 76,
+    inverse_width: 52, object: 56, bounded: 60, high: 64, mode: 76,
 });
 
 /// A cell of a volume's grid.
@@ -752,7 +762,7 @@ gpu_layout!(VolumeCell, 8, { first: 0, counts: 4 });
 pub struct VolumePoint {
     /// Centred scene space.
     pub position: [f32; 3],
-    /// What it carries.
+    /// What it carries; a particle, A (m/ρ) / (π h³).
     pub scalar: f32,
 }
 gpu_layout!(VolumePoint, 16, { position: 0, scalar: 12 });
@@ -776,7 +786,8 @@ gpu_layout!(VolumeStop, 32, { color: 0, extinction: 12, value: 16, pad: 20 });
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct March {
-    /// Emitted towards its start so far.
+    /// Emitted towards its start so far; of other modes than emission, the greatest scalar or the integral
+    /// of all, and the length in reach.
     pub color: [f32; 3],
     /// What comes through from behind.
     pub transmittance: f32,

@@ -68,7 +68,7 @@ pub(crate) fn attribute_colors(
 }
 
 /// The colour of a map at 0..=1, linear.
-fn mapped(map: ColorMap, part: f64) -> [f32; 3] {
+pub(crate) fn mapped(map: ColorMap, part: f64) -> [f32; 3] {
     let gradient = match map {
         ColorMap::Viridis => colorous::VIRIDIS,
         ColorMap::Turbo => colorous::TURBO,

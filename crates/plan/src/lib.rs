@@ -162,6 +162,17 @@ pub enum PlanError {
         /// Along the longest ray.
         samples: f64,
     },
+    /// A volume that has to be the only one, among others.
+    #[error(
+        "object '{name}': its volume's mode is not \"emission\", for which it has to be the scene's only volume, \
+         but there are {count}; render them one by one, or leave mode out"
+    )]
+    SeveralVolumes {
+        /// The object.
+        name: String,
+        /// Volumes of the scene.
+        count: usize,
+    },
     /// A material asks for an attribute that the file lacks.
     #[error(
         "object '{name}': material.albedo is \"attribute:{attribute}\" but {file} has no such attribute; it \

@@ -1,12 +1,16 @@
 //! Volumes: which points carry a surface, and the grid in which a sample finds the points in its reach
-//! (\[T\] §6; docs/method.md, section 7).
+//! (\[T\] §6; docs/method.md, section 8).
 
 use crate::PlanError;
+use crate::colors::mapped;
 use kernels::layout::{
-    GridInfo, Point, VOLUME_SHEPARD, VOLUME_SUM, VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
+    GridInfo, Point, VOLUME_AVERAGE, VOLUME_EMISSION, VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH,
+    VOLUME_SUM, VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
 };
 use points::{Cloud, NeighborSearch, ObjectPoints, PointSet};
-use scene::{Boundary, Object, Scene, Volume, VolumeKernel};
+use scene::{
+    Boundary, ColorMap, Object, PerParticle, Scene, Transfer, Volume, VolumeKernel, VolumeMode,
+};
 use std::sync::Arc;
 
 /// Neighbours that the spacing of a volume's points is measured by.
@@ -23,6 +27,9 @@ const MOST_SAMPLES: f64 = 16_000_000.0;
 /// Cells along the longest axis: more cost more memory than they save samples.
 const MOST_CELLS: f64 = 160.0;
 
+/// Stops that a map of colours becomes.
+const MAP_STOPS: u32 = 65;
+
 /// All volumes of a scene, as plain data.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Volumes {
@@ -32,6 +39,8 @@ pub struct Volumes {
     pub cells: Vec<VolumeCell>,
     /// Points of each volume by cell, in the order of the file within one.
     pub points: Vec<VolumePoint>,
+    /// 1/h of each point, 0 where it has none; one number where no volume has particles.
+    pub inverse_lengths: Vec<f32>,
     /// Of all transfer functions.
     pub stops: Vec<VolumeStop>,
     /// Distance of the samples along a ray: the shortest that a volume asks for.
@@ -150,22 +159,42 @@ pub(crate) fn plan_volumes(
         let Some(volume) = &object.volume else { continue };
         let scalars = attribute(object, &sets[index], &volume.scalar)?;
         let positions = &world[index];
-        let radius = match volume.radius {
-            Some(radius) => radius,
-            None => spacing(positions)?,
+        let particles = match &volume.kernel {
+            VolumeKernel::Sph { smoothing_length, mass, density } => {
+                let of = Sph { smoothing_length, mass: mass.as_ref(), density: density.as_deref() };
+                of.particles(object, &sets[index], &scalars)?
+            }
+            _ => scalars.iter().map(|&scalar| Particle { length: f64::INFINITY, scalar }).collect(),
+        };
+        let radius = match (&volume.kernel, volume.radius) {
+            (VolumeKernel::Sph { .. }, _) => {
+                2.0 * particles
+                    .iter()
+                    .map(|p| p.length)
+                    .filter(|h| h.is_finite())
+                    .fold(0.0, f64::max)
+            }
+            (_, Some(radius)) => radius,
+            (_, None) => spacing(positions)?,
         };
         // Points that all lie in one place have no spacing, and any reach shows them alike.
         let radius = if radius > 0.0 { radius } else { 1.0 };
-        let points: Vec<VolumePoint> = positions
+        let points: Vec<(VolumePoint, f32)> = positions
             .iter()
-            .zip(&scalars)
-            .filter(|(_, scalar)| (**scalar as f32).is_finite())
-            .map(|(p, &scalar)| VolumePoint {
-                position: [0, 1, 2].map(|axis| (p[axis] - origin[axis]) as f32),
-                scalar: scalar as f32,
+            .zip(&particles)
+            .filter(|(_, of)| (of.scalar as f32).is_finite() && of.length > 0.0)
+            .map(|(p, of)| {
+                let position = [0, 1, 2].map(|axis| (p[axis] - origin[axis]) as f32);
+                let inverse_length = (1.0 / of.length) as f32;
+                (VolumePoint { position, scalar: of.scalar as f32 }, inverse_length)
             })
+            .filter(|(_, inverse_length)| inverse_length.is_finite())
             .collect();
-        volumes.add(index as u32, volume, radius as f32, points)?;
+        let stops = stops_of(&volume.transfer, &scalars);
+        volumes.add(index as u32, volume, radius as f32, (points, stops));
+    }
+    if volumes.infos.iter().all(|info| info.kernel != VOLUME_SPH) {
+        volumes.inverse_lengths = vec![0.0];
     }
     // Floats count no farther, so a ray of more samples would end too soon.
     let corner = |of: fn(&VolumeInfo) -> [f32; 3], pick: fn(f32, f32) -> f32| {
@@ -179,7 +208,65 @@ pub(crate) fn plan_volumes(
     if !volumes.infos.is_empty() && samples > MOST_SAMPLES {
         return Err(PlanError::TooManySamples { step: volumes.step, samples });
     }
-    Ok(volumes)
+    let count = volumes.infos.len();
+    match volumes.infos.iter().find(|info| info.mode != VOLUME_EMISSION) {
+        Some(info) if count > 1 => Err(PlanError::SeveralVolumes {
+            name: scene.objects[info.object as usize].name.clone(),
+            count,
+        }),
+        _ => Ok(volumes),
+    }
+}
+
+/// What a particle reaches by, in scene units, and what its kernel is multiplied by.
+struct Particle {
+    /// Without an end where no smoothing length is its own.
+    length: f64,
+    scalar: f64,
+}
+
+/// How particles of smoothed particle hydrodynamics are given.
+struct Sph<'a> {
+    smoothing_length: &'a PerParticle,
+    mass: Option<&'a PerParticle>,
+    density: Option<&'a str>,
+}
+
+impl Sph<'_> {
+    /// h over the side of a particle's volume, where no mass says more (Price 2012, with η = 1.2).
+    const SPACING: f64 = 1.2;
+
+    /// A (m/ρ) / (π h³) of each point, with m/ρ and h in one unit of length.
+    fn particles(
+        &self,
+        object: &Object,
+        set: &PointSet,
+        scalars: &[f64],
+    ) -> Result<Vec<Particle>, PlanError> {
+        let scale = object.transform.scale;
+        let of = |what: &PerParticle, unit: f64| -> Result<Vec<f64>, PlanError> {
+            Ok(match what {
+                PerParticle::Number(number) => vec![*number; scalars.len()],
+                PerParticle::Attribute(name) => {
+                    attribute(object, set, name)?.into_iter().map(|value| value * unit).collect()
+                }
+            })
+        };
+        let lengths = of(self.smoothing_length, scale)?;
+        let masses = self.mass.map(|mass| of(mass, 1.0)).transpose()?;
+        let densities = self.density.map(|name| attribute(object, set, name)).transpose()?;
+        let scalar = |i: usize| {
+            let h = lengths[i];
+            // The volume over h³, times the scalar.
+            let carried = match (&masses, &densities) {
+                (None, _) => scalars[i] / Self::SPACING.powi(3),
+                (Some(m), Some(rho)) => m[i] / rho[i] * scalars[i] * (scale / h).powi(3),
+                (Some(m), None) => m[i] * (scale / h).powi(3),
+            };
+            Particle { length: h, scalar: carried / std::f64::consts::PI }
+        };
+        Ok((0..scalars.len()).map(scalar).collect())
+    }
 }
 
 impl Volumes {
@@ -189,6 +276,7 @@ impl Volumes {
         (size_of_val(self.infos.as_slice())
             + size_of_val(self.cells.as_slice())
             + size_of_val(self.points.as_slice())
+            + size_of_val(self.inverse_lengths.as_slice())
             + size_of_val(self.stops.as_slice())) as u64
     }
 
@@ -197,45 +285,53 @@ impl Volumes {
         object: u32,
         volume: &Volume,
         radius: f32,
-        points: Vec<VolumePoint>,
-    ) -> Result<(), PlanError> {
+        (points, stops): (Vec<(VolumePoint, f32)>, Vec<VolumeStop>),
+    ) {
         let smoothing = volume.smoothing.map_or(0.25 * radius * radius, |rho| rho as f32);
-        self.step = self.step.min(volume.step.map_or(0.25 * radius, |step| step as f32));
+        let lengths = points.iter().filter(|(_, inverse)| *inverse > 0.0);
+        let (sum, count) = lengths.fold((0.0, 0u32), |(sum, count), (_, inverse)| {
+            (sum + 1.0 / f64::from(*inverse), count + 1)
+        });
+        let step = match (volume.step, count) {
+            (Some(step), _) => step as f32,
+            (None, 0) => 0.25 * radius,
+            (None, _) => (0.5 * sum / f64::from(count)) as f32,
+        };
+        self.step = self.step.min(step);
         let (grid, high) = grid_over(&points, radius);
         let (first_cell, first_stop) = (self.cells.len() as u32, self.stops.len() as u32);
-        self.stops.extend(volume.transfer.iter().map(|stop| VolumeStop {
-            color: stop.color.map(|c| c as f32),
-            extinction: stop.extinction as f32,
-            value: stop.value as f32,
-            pad: [0; 3],
-        }));
+        self.stops.extend(stops);
         let kernel = match volume.kernel {
             VolumeKernel::Shepard => VOLUME_SHEPARD,
             VolumeKernel::Sum => VOLUME_SUM,
+            VolumeKernel::Sph { .. } => VOLUME_SPH,
         };
         let info = VolumeInfo {
             grid,
             first_cell,
             first_stop,
-            stop_count: volume.transfer.len() as u32,
+            stop_count: self.stops.len() as u32 - first_stop,
             kernel,
             square_radius: radius * radius,
             inverse_width: 1.0 / (2.0 * smoothing),
             object,
             bounded: u32::from(volume.boundary != Boundary::None),
             high,
-            pad: 0,
+            mode: match volume.mode {
+                VolumeMode::Emission | VolumeMode::Isosurface(_) => VOLUME_EMISSION,
+                VolumeMode::Maximum => VOLUME_MAXIMUM,
+                VolumeMode::Average => VOLUME_AVERAGE,
+            },
         };
-        self.list(&info, points);
+        self.list(&info, &points);
         self.infos.push(info);
-        Ok(())
     }
 
     /// Counts, adds up and scatters the points, in their order, and says which cells may show anything.
-    fn list(&mut self, info: &VolumeInfo, points: Vec<VolumePoint>) {
+    fn list(&mut self, info: &VolumeInfo, points: &[(VolumePoint, f32)]) {
         let grid = &info.grid;
         let base = self.points.len();
-        let cell_of: Vec<usize> = points.iter().map(|p| cell_of(grid, p.position)).collect();
+        let cell_of: Vec<usize> = points.iter().map(|(p, _)| cell_of(grid, p.position)).collect();
         let cells = grid.cell_count() as usize;
         let mut first = vec![0u32; cells + 1];
         for &cell in &cell_of {
@@ -246,11 +342,13 @@ impl Volumes {
         }
         let mut next = first.clone();
         self.points.resize(base + points.len(), VolumePoint { position: [0.0; 3], scalar: 0.0 });
-        for (point, &cell) in points.iter().zip(&cell_of) {
+        self.inverse_lengths.resize(base + points.len(), 0.0);
+        for ((point, inverse_length), &cell) in points.iter().zip(&cell_of) {
             self.points[base + next[cell] as usize] = *point;
+            self.inverse_lengths[base + next[cell] as usize] = *inverse_length;
             next[cell] += 1;
         }
-        let seen = self.cells_seen(info, &points, &cell_of);
+        let seen = self.cells_seen(info, points, &cell_of);
         self.cells.extend(
             first
                 .iter()
@@ -261,13 +359,18 @@ impl Volumes {
 
     /// 1 for each cell from which a point in reach may be seen: there are points in the cells around, and
     /// some value that they can have together has an extinction.
-    fn cells_seen(&self, info: &VolumeInfo, points: &[VolumePoint], cell_of: &[usize]) -> Vec<u32> {
+    fn cells_seen(
+        &self,
+        info: &VolumeInfo,
+        points: &[(VolumePoint, f32)],
+        cell_of: &[usize],
+    ) -> Vec<u32> {
         let [nx, ny, nz] = info.grid.resolution.map(|n| n as usize);
         let none = (f32::INFINITY, f32::NEG_INFINITY, 0u32);
         let mut ranges = vec![none; nx * ny * nz];
         let merge =
             |a: (f32, f32, u32), b: (f32, f32, u32)| (a.0.min(b.0), a.1.max(b.1), a.2 + b.2);
-        for (point, &cell) in points.iter().zip(cell_of) {
+        for ((point, _), &cell) in points.iter().zip(cell_of) {
             ranges[cell] = merge(ranges[cell], (point.scalar, point.scalar, 1));
         }
         let reach = (info.square_radius.sqrt() * info.grid.inverse_edge).ceil() as usize + 1;
@@ -284,10 +387,14 @@ impl Volumes {
         }
         let seen = |(low, high, count): (f32, f32, u32)| {
             let (low, high) = match info.kernel {
-                VOLUME_SUM => ((low * count as f32).min(0.0), (high * count as f32).max(0.0)),
+                // No kernel is over 1.
+                VOLUME_SUM | VOLUME_SPH => {
+                    ((low * count as f32).min(0.0), (high * count as f32).max(0.0))
+                }
                 _ => (low, high),
             };
-            count > 0 && self.has_extinction(info, low, high)
+            // What cannot be seen counts too, where not each place is seen for itself.
+            count > 0 && (info.mode != VOLUME_EMISSION || self.has_extinction(info, low, high))
         };
         ranges.into_iter().map(|range| u32::from(seen(range))).chain([0]).collect()
     }
@@ -314,9 +421,50 @@ impl Volumes {
     }
 }
 
+/// A transfer function as stops.
+fn stops_of(transfer: &Transfer, scalars: &[f64]) -> Vec<VolumeStop> {
+    match transfer {
+        Transfer::Stops(stops) => stops
+            .iter()
+            .map(|stop| VolumeStop {
+                color: stop.color.map(|c| c as f32),
+                extinction: stop.extinction as f32,
+                value: stop.value as f32,
+                pad: [0; 3],
+            })
+            .collect(),
+        Transfer::Map { color_map, range, extinction } => {
+            let [low, high] = range.unwrap_or_else(|| own_range(scalars));
+            map_stops(*color_map, [low, high], *extinction)
+        }
+    }
+}
+
+/// From the lowest scalar to the highest.
+fn own_range(scalars: &[f64]) -> [f64; 2] {
+    let finite = || scalars.iter().copied().filter(|scalar| (*scalar as f32).is_finite());
+    let low = finite().fold(f64::INFINITY, f64::min);
+    let high = finite().fold(f64::NEG_INFINITY, f64::max);
+    if low <= high { [low, high] } else { [0.0, 1.0] }
+}
+
+/// Even stops on a map; the middle of the map alone where all scalars are one.
+fn map_stops(map: ColorMap, [low, high]: [f64; 2], extinction: [f64; 2]) -> Vec<VolumeStop> {
+    let stop = |part: f64| VolumeStop {
+        color: mapped(map, part),
+        extinction: (extinction[0] + part * (extinction[1] - extinction[0])) as f32,
+        value: (low + part * (high - low)) as f32,
+        pad: [0; 3],
+    };
+    if low >= high {
+        return vec![stop(0.5)];
+    }
+    (0..MAP_STOPS).map(|i| stop(f64::from(i) / f64::from(MAP_STOPS - 1))).collect()
+}
+
 /// Cells of an edge of the radius, over the points' bounding box grown by it, and the highest corner of that.
-fn grid_over(points: &[VolumePoint], radius: f32) -> (GridInfo, [f32; 3]) {
-    let along = |axis: usize| points.iter().map(move |p| p.position[axis]);
+fn grid_over(points: &[(VolumePoint, f32)], radius: f32) -> (GridInfo, [f32; 3]) {
+    let along = |axis: usize| points.iter().map(move |(p, _)| p.position[axis]);
     let (mut low, mut high, mut extent) = ([0.0; 3], [0.0; 3], [0.0f64; 3]);
     for axis in 0..3 {
         let least = along(axis).fold(f32::INFINITY, f32::min);

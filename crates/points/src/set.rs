@@ -133,7 +133,7 @@ impl Values {
     }
 
     /// All values, in the order of the points.
-    pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
+    pub fn iter(&self) -> impl Iterator<Item = f64> + Clone + '_ {
         (0..self.len()).map(|index| self.get(index))
     }
 }

@@ -19,7 +19,7 @@ pub struct PointSummary {
     pub max: [f64; 3],
     /// Name and range of everything else a point has: normals as `nx`, `ny`, `nz`, colours as
     /// `red`, `green`, `blue` in the file's units, then the attributes in the order of the file.
-    pub attributes: Vec<(String, Range)>,
+    pub attributes: Vec<(String, Range, Histogram)>,
     /// Median distance to the nearest other point; 0 for duplicates, `None` for a single point.
     pub spacing: Option<f64>,
 }
@@ -44,21 +44,17 @@ impl PointSummary {
         if let Some(normals) = &set.normals {
             for (axis, name) in ["nx", "ny", "nz"].into_iter().enumerate() {
                 let values = normals.iter().map(|normal| f64::from(normal[axis]));
-                attributes.push((name.to_owned(), Range::of(values)));
+                attributes.push(described(name, values));
             }
         }
         if let (Some(colors), Some(encoding)) = (&set.colors, set.color_encoding) {
             for (channel, name) in ["red", "green", "blue"].into_iter().enumerate() {
-                let linear = Range::of(colors.iter().map(|color| f64::from(color[channel])));
-                // Encoding the ends is enough: the curve rises.
-                let stored = linear
-                    .0
-                    .map(|(min, max)| (encoding.encode(min as f32), encoding.encode(max as f32)));
-                attributes.push((name.to_owned(), Range(stored)));
+                let stored = colors.iter().map(|color| encoding.encode(color[channel]));
+                attributes.push(described(name, stored));
             }
         }
         for attribute in &set.attributes {
-            attributes.push((attribute.name.clone(), Range::of(attribute.values.iter())));
+            attributes.push(described(&attribute.name, attribute.values.iter()));
         }
         Self {
             format: set.format.clone(),
@@ -80,9 +76,10 @@ impl PointSummary {
         let attributes: Map<String, Value> = self
             .attributes
             .iter()
-            .map(|(name, range)| {
+            .map(|(name, range, Histogram { low, high, counts })| {
                 let (min, max) = range.0.unzip();
-                (name.clone(), json!({ "min": min, "max": max }))
+                let histogram = json!({ "low": low, "high": high, "counts": counts });
+                (name.clone(), json!({ "min": min, "max": max, "histogram": histogram }))
             })
             .collect();
         json!({
@@ -93,6 +90,61 @@ impl PointSummary {
             "attributes": attributes,
             "spacing": self.spacing,
         })
+    }
+}
+
+/// How often values lie where, between the lowest finite one and the highest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Histogram {
+    /// Lower end of the first part; 0 where no value is finite.
+    pub low: f64,
+    /// Upper end of the last part.
+    pub high: f64,
+    /// Values in each of the even parts; an end between two counts for the upper one.
+    pub counts: [u64; BINS],
+}
+
+/// Parts of a histogram.
+const BINS: usize = 16;
+/// Characters of its longest bar.
+const BAR: u64 = 40;
+
+/// What is told about some values.
+fn described(name: &str, values: impl Iterator<Item = f64> + Clone) -> (String, Range, Histogram) {
+    (name.to_owned(), Range::of(values.clone()), Histogram::of(values))
+}
+
+impl Histogram {
+    /// The histogram of some values. Those that are not finite are passed over.
+    pub fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
+        let finite = values.filter(|value| value.is_finite());
+        let (low, high) = Range::of(finite.clone()).0.unwrap_or_default();
+        let mut counts = [0; BINS];
+        // Halves, so that no difference of two numbers overflows.
+        let span = 0.5 * high - 0.5 * low;
+        for value in finite {
+            let part = if span > 0.0 { (0.5 * value - 0.5 * low) / span } else { 0.0 };
+            // The highest value is in the last part.
+            counts[((part * BINS as f64) as usize).min(BINS - 1)] += 1;
+        }
+        Self { low, high, counts }
+    }
+}
+
+impl fmt::Display for Histogram {
+    /// One line a part: its lower end, how many, and a bar.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let most = self.counts.iter().copied().max().unwrap_or(0).max(1);
+        let width = most.to_string().len();
+        for (bin, &count) in self.counts.iter().enumerate() {
+            let part = bin as f64 / BINS as f64;
+            let from = self.low * (1.0 - part) + self.high * part;
+            // What is there at all shows.
+            let bar = "#".repeat((count * BAR).div_ceil(most) as usize);
+            let line = format!("{from:>12.5e}  {count:width$}  {bar}");
+            write!(f, "\n      {}", line.trim_end())?;
+        }
+        Ok(())
     }
 }
 
@@ -126,11 +178,16 @@ impl fmt::Display for PointSummary {
             return Ok(());
         }
         write!(f, "\nattributes")?;
-        let width = self.attributes.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
-        for (name, range) in &self.attributes {
+        let width =
+            self.attributes.iter().map(|(name, ..)| name.chars().count()).max().unwrap_or(0);
+        for (name, range, histogram) in &self.attributes {
             match range.0 {
                 Some((min, max)) => write!(f, "\n  {name:width$}  {min} .. {max}")?,
                 None => write!(f, "\n  {name:width$}  not a number")?,
+            }
+            // One value has no distribution.
+            if histogram.low < histogram.high {
+                write!(f, "{histogram}")?;
             }
         }
         Ok(())
@@ -170,19 +227,50 @@ mod tests {
             "points": 2,
             "dropped": { "count": 1, "reasons": { "non-finite position": 1 } },
             "bounds": { "min": [0.5, -2.0, 0.1], "max": [1.0, 4.0, 636_001.76] },
-            "attributes": {
-                "nx": { "min": 0.0, "max": 0.0 },
-                "ny": { "min": -1.0, "max": 0.0 },
-                "nz": { "min": 0.0, "max": 1.0 },
-                "red": { "min": 3.0, "max": 17.0 },
-                "green": { "min": 20.0, "max": 20.0 },
-                "blue": { "min": 0.0, "max": 255.0 },
-                "h": { "min": 2.5, "max": 2.5 },
-                "none": { "min": null, "max": null },
-            },
             "spacing": 0.25,
         });
-        assert_eq!(json, expected);
+        let mut others = json.clone();
+        let attributes = others.as_object_mut().unwrap().remove("attributes").unwrap();
+        assert_eq!(others, expected);
+        let ends: Vec<(&str, Value, Value)> = (attributes.as_object().unwrap().iter())
+            .map(|(name, of)| (name.as_str(), of["min"].clone(), of["max"].clone()))
+            .collect();
+        let of = |name, min: f64, max: f64| (name, json!(min), json!(max));
+        let expected = [
+            of("blue", 0.0, 255.0),
+            of("green", 20.0, 20.0),
+            of("h", 2.5, 2.5),
+            ("none", Value::Null, Value::Null),
+            of("nx", 0.0, 0.0),
+            of("ny", -1.0, 0.0),
+            of("nz", 0.0, 1.0),
+            of("red", 3.0, 17.0),
+        ];
+        let mut ends = ends;
+        ends.sort_by_key(|(name, ..)| *name);
+        assert_eq!(ends, expected);
+        let blue = &attributes["blue"]["histogram"];
+        assert_eq!(
+            *blue,
+            json!({ "low": 0.0, "high": 255.0, "counts":
+            [1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1] })
+        );
+        let none = &attributes["none"]["histogram"];
+        assert_eq!(*none, json!({ "low": 0.0, "high": 0.0, "counts": vec![0; BINS] }));
+    }
+
+    /// 0 to 159 in sixteen parts of 9.9375: each has its tens but for what the ends round.
+    #[test]
+    fn a_histogram_counts_every_finite_value_once() {
+        let values = (0..160).map(f64::from).chain([f64::NAN, f64::INFINITY]);
+        let histogram = Histogram::of(values);
+        assert_eq!((histogram.low, histogram.high), (0.0, 159.0));
+        assert_eq!(histogram.counts, [10; BINS]);
+        let text = histogram.to_string();
+        assert_eq!(text.lines().count(), BINS + 1);
+        assert!(text.contains("   9.93750e0  10  ####"), "{text}");
+        let far = Histogram::of([-f64::MAX, f64::MAX].into_iter());
+        assert_eq!((far.counts[0], far.counts[BINS - 1]), (1, 1));
     }
 
     #[test]

@@ -4,7 +4,9 @@ use crate::camera_rays::Ray;
 use crate::grid::{Ball, Grid, within_box};
 use crate::media::Media;
 use crate::real::{NO_HIT, Real, V3};
-use kernels::layout::{VOLUME_SUM, VolumeInfo};
+use kernels::layout::{
+    VOLUME_AVERAGE, VOLUME_EMISSION, VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo,
+};
 use plan::Volumes;
 
 /// Transmittance that still counts.
@@ -41,6 +43,13 @@ pub fn transfer<R: Real>(volume: &VolumeInfo, volumes: &Volumes, scalar: R) -> (
     )
 }
 
+/// Monaghan's cubic spline times π h³, at q = d/h: 1 − 3/2 q² + 3/4 q³ below 1, (2 − q)³/4 below 2.
+fn spline<R: Real>(q: R) -> R {
+    let far = (R::of(2.0) - q).max(R::of(0.0));
+    let near = (R::of(1.0) - q).max(R::of(0.0));
+    R::of(0.25) * (far * far * far) - near * near * near
+}
+
 /// The scalar at x by Eq. 3, or the sum of its kernel; `None` out of every point's reach.
 pub fn scalar_at<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>) -> Option<R> {
     let grid = Grid::<R>::from(&volume.grid);
@@ -59,10 +68,15 @@ pub fn scalar_at<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>) -> O
         for y in low[1]..=high[1] {
             let row = cell([low[0], y, z]);
             let end = row[(high[0] - low[0]) as usize + 1].first;
-            for point in &volumes.points[row[0].first as usize..end as usize] {
+            for i in row[0].first as usize..end as usize {
+                let point = &volumes.points[i];
                 let to = V3::of_f32(point.position) - x;
                 let square = to.dot(to);
-                if square <= square_radius {
+                if volume.kernel == VOLUME_SPH {
+                    let weight = spline(square.sqrt() * R::of_f32(volumes.inverse_lengths[i]));
+                    numerator = numerator + weight * R::of_f32(point.scalar);
+                    denominator = denominator + weight;
+                } else if square <= square_radius {
                     let weight = (-square * R::of_f32(volume.inverse_width)).exp_negative();
                     numerator = numerator + weight * R::of_f32(point.scalar);
                     denominator = denominator + weight;
@@ -70,8 +84,18 @@ pub fn scalar_at<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>) -> O
             }
         }
     }
-    let divisor = if volume.kernel == VOLUME_SUM { R::of(1.0) } else { denominator };
+    let divisor = if volume.kernel == VOLUME_SHEPARD { denominator } else { R::of(1.0) };
     (denominator > R::of(0.0)).then(|| numerator / divisor)
+}
+
+/// What a ray shows of the scalar that stands for its whole way: a layer of one radius, or all of it.
+fn shown<R: Real>(volume: &VolumeInfo, volumes: &Volumes, [scalar, way]: [R; 2]) -> March<R> {
+    let mean = volume.mode == VOLUME_AVERAGE;
+    let (color, extinction) = transfer(volume, volumes, if mean { scalar / way } else { scalar });
+    let thickness = if mean { way } else { R::of_f32(volume.square_radius).sqrt() };
+    let through = (-(extinction * thickness)).exp_negative();
+    let transmittance = if through < R::of(FEWEST) { R::of(0.0) } else { through };
+    March { color: color.times(R::of(1.0) - transmittance), transmittance }
 }
 
 /// Follows a ray that ends at `end` through all volumes. `media` are those it is inside of.
@@ -95,13 +119,20 @@ pub fn march<R: Real>(ray: &Ray<R>, end: R, media: &Media, volumes: &Volumes) ->
     let span = to.min(end) - from;
     let samples = (-(-(span / step)).floor()).max(zero).min(R::of(MOST_SAMPLES)).to_u32();
     let mut march = March { color: V3::splat(zero), transmittance: one };
+    let mut whole = [zero; 2]; // the greatest scalar or the integral of all, and the length in reach
     for place in 0..samples {
         let begin = R::of_u32(place) * step;
         let length = step.min(span - begin);
         let x = ray.origin + ray.direction.times(from + (begin + R::of(0.5) * length));
         let (mut color, mut extinction) = (V3::splat(zero), zero);
         for volume in &taking_part {
-            if let Some(scalar) = scalar_at(volume, volumes, x) {
+            let Some(scalar) = scalar_at(volume, volumes, x) else { continue };
+            if volume.mode == VOLUME_MAXIMUM {
+                let greater = whole[1] <= zero || scalar > whole[0];
+                whole = [if greater { scalar } else { whole[0] }, whole[1] + length];
+            } else if volume.mode == VOLUME_AVERAGE {
+                whole = [whole[0] + length * scalar, whole[1] + length];
+            } else {
                 let (c, sigma) = transfer(volume, volumes, scalar);
                 color = color + c.times(sigma);
                 extinction = extinction + sigma;
@@ -118,5 +149,10 @@ pub fn march<R: Real>(ray: &Ray<R>, end: R, media: &Media, volumes: &Volumes) ->
             break;
         }
     }
-    march
+    match volumes.infos.first() {
+        Some(only) if only.mode != VOLUME_EMISSION && whole[1] > zero => {
+            shown(only, volumes, whole)
+        }
+        _ => march,
+    }
 }

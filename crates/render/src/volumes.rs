@@ -10,6 +10,7 @@ pub(crate) struct VolumeBuffers {
     pub infos: Buffer,
     pub cells: Buffer,
     pub points: Buffer,
+    pub inverse_lengths: Buffer,
     pub stops: Buffer,
     pub marches: Buffer,
 }
@@ -29,6 +30,11 @@ impl VolumeBuffers {
             infos: Buffer::from_slice(device, "volumes", &volumes.infos)?,
             cells: Buffer::from_slice(device, "volume cells", &volumes.cells)?,
             points: Buffer::from_slice(device, "volume points", &volumes.points)?,
+            inverse_lengths: Buffer::from_slice(
+                device,
+                "volume lengths",
+                &volumes.inverse_lengths,
+            )?,
             stops: Buffer::from_slice(device, "transfer functions", &volumes.stops)?,
             marches: Buffer::new(device, "marches", bytes)?,
         }))

@@ -14,8 +14,13 @@ const MAX_PROBLEMS: usize = 1000;
 
 /// Everything wrong with a document.
 pub(crate) fn check(document: &Node) -> Vec<Problem> {
+    check_as(document, &SCENE)
+}
+
+/// Everything wrong with a document that is to be this table.
+pub(crate) fn check_as(document: &Node, table: &'static Table) -> Vec<Problem> {
     let mut checker = Checker { problems: Vec::new() };
-    checker.table(document, &SCENE, "", "");
+    checker.table(document, table, "", "");
     checker.problems
 }
 
@@ -115,7 +120,7 @@ impl Checker {
         }
         match &spot.key.kind {
             Kind::Table(table) => self.table(node, table, spot.path, spot.plain_path),
-            Kind::Tables { table, min, max } => self.tables(node, spot, table, *min, *max),
+            Kind::Tables { table, min, max, .. } => self.tables(node, spot, table, *min, *max),
             kind => {
                 if let Err(Wrong { within, origin, message }) = scalar(node, kind, spot.key) {
                     self.report(origin, &format!("{}{within}", spot.path), message);
@@ -218,6 +223,7 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
             within(found as f64, 1.0, *max as f64)
                 .map_err(|advice| format!("found {}, expected {range}; {advice}", item.shown))
         }),
+        (Kind::Pair(range), _) => elements(2, &|item| element(item, range)),
         (Kind::Range(range), _) => {
             elements(2, &|item| element(item, range))?;
             let ends: Vec<Option<f64>> = node.items().iter().map(as_number).collect();
@@ -249,9 +255,9 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
             let same_type = |kind: &&Kind| {
                 matches!(
                     (kind, value),
-                    (Kind::Choice(_), Value::Text(_))
+                    (Kind::Choice(_) | Kind::Text(_), Value::Text(_))
                         | (Kind::Number(_), Value::Integer(_) | Value::Float(_))
-                        | (Kind::Vector(_), Value::List(_))
+                        | (Kind::Vector(_) | Kind::Pair(_), Value::List(_))
                 )
             };
             let prefixed = |kind: &&Kind| match (kind, value) {
@@ -401,6 +407,60 @@ pub(crate) fn background_is_one(background: &Reader<'_>) -> Result<(), Fault> {
         )),
         _ => Ok(()),
     }
+}
+
+/// What a volume shows is stated once, and each kernel and mode has its keys.
+pub(crate) fn volume_says_it_once(volume: &Reader<'_>) -> Result<(), Fault> {
+    let has = |name: &str| volume.written(name).is_some();
+    match (has("transfer"), has("color_map")) {
+        (true, true) => {
+            let message = "found both transfer and color_map, expected one of them; remove one";
+            return Err(("color_map", message.into()));
+        }
+        (false, false) => {
+            let message = "missing, and so is color_map, expected one of them; add e.g. color_map = \
+                           \"viridis\" and extinction = [0.0, 5.0]";
+            return Err(("transfer", message.into()));
+        }
+        (false, true) if !has("extinction") => {
+            let message = "missing, expected the extinction of what color_map shows; add e.g. extinction = \
+                           [0.0, 5.0]";
+            return Err(("extinction", message.into()));
+        }
+        _ => {}
+    }
+    let owned = [
+        ("value_range", has("color_map"), "color_map, but there is none"),
+        ("extinction", has("color_map"), "color_map, but there is none"),
+        (
+            "smoothing_length",
+            volume.text("kernel") == "sph",
+            "kernel \"sph\", but kernel is another",
+        ),
+        ("mass", volume.text("kernel") == "sph", "kernel \"sph\", but kernel is another"),
+        ("density", has("mass"), "mass, but there is none"),
+        ("radius", volume.text("kernel") != "sph", "other kernels than \"sph\""),
+        ("smoothing", volume.text("kernel") != "sph", "other kernels than \"sph\""),
+        ("iso", volume.text("mode") == "isosurface", "mode \"isosurface\", but mode is another"),
+    ];
+    for (name, fits, owner) in owned {
+        if has(name) && !fits {
+            return Err((name, format!("belongs to {owner}; remove one")));
+        }
+    }
+    let required = [
+        ("smoothing_length", volume.text("kernel") == "sph", "kernel \"sph\"", "\"h\""),
+        ("iso", volume.text("mode") == "isosurface", "mode \"isosurface\"", "0.5"),
+    ];
+    for (name, needed, owner, example) in required {
+        if needed && !has(name) {
+            return Err((
+                name,
+                format!("missing, expected for {owner}; add e.g. {name} = {example}"),
+            ));
+        }
+    }
+    stops_ascend(volume)
 }
 
 /// A transfer function's stops ascend in value.

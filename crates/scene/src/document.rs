@@ -84,6 +84,28 @@ impl Node {
         entries.iter().find(|entry| entry.name == name).map(|entry| &entry.node)
     }
 
+    /// The same, to be changed.
+    pub(crate) fn get_mut(&mut self, name: &str) -> Option<&mut Node> {
+        let Value::Table(entries) = &mut self.value else { return None };
+        entries.iter_mut().find(|entry| entry.name == name).map(|entry| &mut entry.node)
+    }
+
+    /// The same node, as if all of it were written in `origin`.
+    pub(crate) fn moved(self, origin: Origin) -> Self {
+        let value = match self.value {
+            Value::List(items) => {
+                Value::List(items.into_iter().map(|item| item.moved(origin)).collect())
+            }
+            Value::Table(entries) => {
+                let entry =
+                    |entry: Entry| Entry { origin, node: entry.node.moved(origin), ..entry };
+                Value::Table(entries.into_iter().map(entry).collect())
+            }
+            other => other,
+        };
+        Self { value, origin, shown: self.shown }
+    }
+
     /// The elements of a list, or nothing.
     pub(crate) fn items(&self) -> &[Node] {
         if let Value::List(items) = &self.value { items } else { &[] }

@@ -5,7 +5,7 @@
 
 use crate::check::{
     background_is_one, camera_has_a_view, direction_has_a_length, material_has_one_color,
-    stops_ascend,
+    stops_ascend, volume_says_it_once,
 };
 use crate::read::Reader;
 
@@ -80,10 +80,14 @@ pub(crate) enum Kind {
     /// One of several, told apart by TOML type.
     Either(&'static [Kind]),
     Table(&'static Table),
+    /// Two numbers.
+    Pair(Numbers),
     Tables {
         table: &'static Table,
         min: usize,
         max: usize,
+        /// The path of a file that has them under the same key will do.
+        in_file: bool,
     },
     /// Announced for later, form not fixed.
     Announced,
@@ -147,13 +151,13 @@ pub(crate) static SCENE: Table = Table {
         key("background", Kind::Table(&BACKGROUND), Absent::Table, BACKGROUND.doc),
         key(
             "lights",
-            Kind::Tables { table: &LIGHTS, min: 0, max: 1024 },
+            Kind::Tables { table: &LIGHTS, min: 0, max: 1024, in_file: false },
             Absent::Table,
             LIGHTS.doc,
         ),
         key(
             "objects",
-            Kind::Tables { table: &OBJECTS, min: 1, max: 65_536 },
+            Kind::Tables { table: &OBJECTS, min: 1, max: 65_536, in_file: false },
             Required("[{ points = \"points/knot.ply\" }]"),
             OBJECTS.doc,
         ),
@@ -578,7 +582,7 @@ const AUTO_LENGTH: Kind = Kind::Either(&[Kind::Choice(&["auto"]), LENGTH]);
 pub(crate) static VOLUME: Table = Table {
     header: "[objects.volume]",
     doc: "A volume made of the points. Left out, the object is a pure surface.",
-    whole: Some(stops_ascend),
+    whole: Some(volume_says_it_once),
     keys: &[
         key(
             "scalar",
@@ -588,12 +592,41 @@ pub(crate) static VOLUME: Table = Table {
         ),
         key(
             "kernel",
-            Kind::Choice(&["shepard", "sum"]),
+            Kind::Choice(&["shepard", "sum", "sph"]),
             Value("\"shepard\""),
-            "How points are blended: by the weighted mean of those in reach, as in the paper, or by the \
-             weighted sum.",
+            "How points are blended: by the weighted mean of those in reach, as in the paper, by the \
+             weighted sum, or as particles of smoothed particle hydrodynamics: Σ (m/ρ) A W(d, h) with the \
+             cubic spline W, which ends at 2h.",
         ),
-        key("radius", AUTO_LENGTH, Value("\"auto\""), "Reach of a point."),
+        key(
+            "smoothing_length",
+            Kind::Either(&[LENGTH, Kind::Text("the name of an attribute")]),
+            Words("none; required where the kernel is sph", "\"h\""),
+            "Kernel `sph` only: h of every particle, or the attribute that has it, which is scaled with the \
+             object.",
+        ),
+        key(
+            "mass",
+            Kind::Either(&[
+                Kind::Number(numbers(0.0, LARGE, "")),
+                Kind::Text("the name of an attribute, or \"auto\""),
+            ]),
+            Value("\"auto\""),
+            "Kernel `sph` only: m of every particle, or the attribute that has it; `auto` takes each \
+             particle's volume m/ρ to be (h/1.2)³.",
+        ),
+        key(
+            "density",
+            Kind::Text("the name of an attribute"),
+            Words("that of `scalar`: the density Σ m W itself is shown", "\"rho\""),
+            "Kernel `sph` with `mass` only: the attribute that has the particles' density ρ.",
+        ),
+        key(
+            "radius",
+            AUTO_LENGTH,
+            Value("\"auto\""),
+            "Reach of a point; with kernel `sph`, the largest 2h, and not to be given.",
+        ),
         key(
             "smoothing",
             Kind::Either(&[
@@ -605,6 +638,20 @@ pub(crate) static VOLUME: Table = Table {
         ),
         key("step", AUTO_LENGTH, Value("\"auto\""), "Distance of the samples along a ray."),
         key(
+            "mode",
+            Kind::Choice(&["emission", "maximum", "average", "isosurface"]),
+            Value("\"emission\""),
+            "What a ray shows: emission and extinction along its way; the greatest scalar on it, as a layer \
+             of one `radius`; the mean scalar, all along the way; or the first place where the scalar is \
+             `iso`. All but `emission` need the scene's only volume.",
+        ),
+        key(
+            "iso",
+            Kind::Number(numbers(-LARGE, LARGE, "in the attribute's unit")),
+            Words("none; required where the mode is isosurface", "0.5"),
+            "Mode `isosurface` only: the scalar on the surface.",
+        ),
+        key(
             "boundary",
             Kind::Text("the name of an attribute, or \"all\", \"none\", \"auto\""),
             Value("\"none\""),
@@ -614,16 +661,54 @@ pub(crate) static VOLUME: Table = Table {
         ),
         key(
             "transfer",
-            Kind::Tables { table: &TRANSFER, min: 1, max: 4096 },
-            Required("[{ value = 0.0, color = [0.0, 0.0, 1.0], extinction = 0.0 }]"),
+            STOPS,
+            Words(
+                "`color_map`; one of the two is required",
+                "[{ value = 0.0, color = [0.0, 0.0, 1.0], extinction = 0.0 }]",
+            ),
             TRANSFER.doc,
+        ),
+        key(
+            "color_map",
+            Kind::Choice(&crate::scene::ColorMap::NAMES),
+            Words("`transfer`; one of the two is required", "\"viridis\""),
+            "Instead of `transfer`: colours from the lower end of `value_range` to the upper one.",
+        ),
+        key(
+            "value_range",
+            Kind::Range(numbers(-LARGE, LARGE, "in the attribute's unit")),
+            Words("the attribute's own range", "[0.0, 1.0]"),
+            "With `color_map`: scalars at its two ends; what lies beyond has their colours.",
+        ),
+        key(
+            "extinction",
+            Kind::Either(&[Kind::Number(EXTINCTION), Kind::Pair(EXTINCTION)]),
+            Words("none; required beside `color_map`", "[0.0, 5.0]"),
+            "With `color_map`: σ everywhere, or at the two ends of `value_range` and linear between.",
         ),
     ],
 };
 
+const EXTINCTION: Numbers = numbers(0.0, LARGE, "per scene unit");
+const STOPS: Kind = Kind::Tables { table: &TRANSFER, min: 1, max: 4096, in_file: true };
+
+/// A file that scenes share a transfer function by.
+pub(crate) static TRANSFER_FILE: Table = Table {
+    header: "a file of a transfer function",
+    doc: "",
+    whole: Some(stops_ascend),
+    keys: &[key(
+        "transfer",
+        Kind::Tables { table: &TRANSFER, min: 1, max: 4096, in_file: false },
+        Required("[{ value = 0.0, color = [0.0, 0.0, 1.0], extinction = 0.0 }]"),
+        TRANSFER.doc,
+    )],
+};
+
 pub(crate) static TRANSFER: Table = Table {
     header: "[[objects.volume.transfer]]",
-    doc: "The stops of the transfer function, ascending in value.",
+    doc: "The stops of the transfer function, ascending in value; or the path of a TOML file that has them as \
+          its `transfer`, relative to the scene file's folder.",
     whole: None,
     keys: &[
         key(
@@ -633,12 +718,7 @@ pub(crate) static TRANSFER: Table = Table {
             "The scalar at this stop.",
         ),
         key("color", RADIANCE, Required("[0.0, 0.0, 1.0]"), "Emitted colour."),
-        key(
-            "extinction",
-            Kind::Number(numbers(0.0, LARGE, "per scene unit")),
-            Required("0.0"),
-            "σ in α = 1 − exp(−σ·step).",
-        ),
+        key("extinction", Kind::Number(EXTINCTION), Required("0.0"), "σ in α = 1 − exp(−σ·step)."),
     ],
 };
 
@@ -668,6 +748,10 @@ impl Kind {
                 kinds.iter().map(Kind::expected).collect::<Vec<_>>().join(", or ")
             }
             Kind::Table(_) => "a table".into(),
+            Kind::Pair(n) => format!("two numbers {n}"),
+            Kind::Tables { min, max, in_file: true, .. } => {
+                format!("a list of {min} to {max} tables, or the path of a file that has it")
+            }
             Kind::Tables { min: 0, max, .. } => format!("a list of up to {max} tables"),
             Kind::Tables { min, max, .. } => format!("a list of {min} to {max} tables"),
             Kind::Announced => "a value whose form is not fixed yet".into(),

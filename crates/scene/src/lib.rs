@@ -18,6 +18,7 @@ mod read;
 mod scene;
 mod schema;
 mod settings;
+mod transfer_file;
 mod transform;
 
 #[cfg(test)]
@@ -29,8 +30,9 @@ pub use error::SceneError;
 pub use models::MODELS_VARIABLE;
 pub use scene::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
-    ImageSettings, Light, Material, MaterialKind, Normals, Object, Polynomial, Primary, Projection,
-    RayLoop, Refine, RenderSettings, Scene, Stop, Surface, TextureAxis, Up, Volume, VolumeKernel,
+    ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, Polynomial,
+    Primary, Projection, RayLoop, Refine, RenderSettings, Scene, Stop, Surface, TextureAxis,
+    Transfer, Up, Volume, VolumeKernel, VolumeMode,
 };
 pub use schema::json_schema;
 pub use transform::Transform;

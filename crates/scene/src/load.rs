@@ -7,9 +7,9 @@ use crate::models::{self, MODELS_VARIABLE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
-    ImageSettings, Light, Material, MaterialKind, Normals, Object, Polynomial, Primary, Projection,
-    RayLoop, Refine, RenderSettings, Scene, SceneError, Stop, Surface, TextureAxis, Transform, Up,
-    Volume, VolumeKernel,
+    ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, Polynomial,
+    Primary, Projection, RayLoop, Refine, RenderSettings, Scene, SceneError, Stop, Surface,
+    TextureAxis, Transfer, Transform, Up, Volume, VolumeKernel, VolumeMode,
 };
 use std::env;
 use std::fs::{self, File};
@@ -25,14 +25,7 @@ impl Scene {
     /// (`objects.0.surface.trust=0.7`), applied in order before the checks; paths in them too
     /// start from the scene file's folder.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
-        let bytes = read(path).map_err(|message| SceneError::file(path, &message))?;
-        let text = str::from_utf8(&bytes).map_err(|error| {
-            let at = error.valid_up_to();
-            let byte = bytes.get(at).copied().unwrap_or_default();
-            let message =
-                format!("found byte 0x{byte:02x}, expected UTF-8; save the file as UTF-8");
-            SceneError::at(path, &bytes, at, &message)
-        })?;
+        let text = &read_text(path)?;
         let (document, mut scene) = parse(text, path, overrides)?;
         models::find(&mut scene, models_folder().as_deref());
         files_exist(&document, &scene, &Source { file: path, text, overrides })?;
@@ -40,7 +33,7 @@ impl Scene {
     }
 
     /// Checks scene text as if it were read from `file`, which names it in messages and whose
-    /// folder relative paths start from. Opens no file.
+    /// folder relative paths start from. Opens no file but those of transfer functions.
     pub fn from_toml(text: &str, file: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
         parse(text, file, overrides).map(|(_, scene)| scene)
     }
@@ -69,6 +62,29 @@ impl Scene {
     }
 }
 
+/// The text of a scene file.
+pub(crate) fn read_text(path: &Path) -> Result<String, SceneError> {
+    let bytes = read(path).map_err(|message| SceneError::file(path, &message))?;
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let bytes = error.as_bytes();
+        let byte = bytes.get(at).copied().unwrap_or_default();
+        let message = format!("found byte 0x{byte:02x}, expected UTF-8; save the file as UTF-8");
+        SceneError::at(path, bytes, at, &message)
+    })
+}
+
+/// The tree of a file.
+pub(crate) fn document_of(text: &str, file: &Path) -> Result<Node, SceneError> {
+    parse_file(text).map_err(|SyntaxError { at, message }| {
+        let message = format!("not valid TOML: {message}");
+        match at {
+            Some(at) => SceneError::at(file, text.as_bytes(), at, &message),
+            None => SceneError::file(file, &message),
+        }
+    })
+}
+
 /// The bytes of a scene file.
 fn read(path: &Path) -> Result<Vec<u8>, String> {
     let reason = |error: io::Error| match error.kind() {
@@ -92,13 +108,7 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 }
 
 fn parse(text: &str, file: &Path, overrides: &[String]) -> Result<(Node, Scene), SceneError> {
-    let mut document = parse_file(text).map_err(|SyntaxError { at, message }| {
-        let message = format!("not valid TOML: {message}");
-        match at {
-            Some(at) => SceneError::at(file, text.as_bytes(), at, &message),
-            None => SceneError::file(file, &message),
-        }
-    })?;
+    let mut document = document_of(text, file)?;
     let folder = file.parent().unwrap_or(Path::new(""));
     let scene = checked(&mut document, folder, &Source { file, text, overrides })?;
     Ok((document, scene))
@@ -110,6 +120,8 @@ fn checked(document: &mut Node, folder: &Path, source: &Source<'_>) -> Result<Sc
     for (index, text) in source.overrides.iter().enumerate() {
         problems.extend(crate::overrides::apply(document, index, text).err());
     }
+    // What is wrong in a file of its own comes first: the scene is right if that is.
+    problems.extend(crate::transfer_file::insert(document, folder)?);
     problems.extend(crate::check::check(document));
     if problems.is_empty() {
         Ok(scene(&Reader::new(&SCENE, Some(document)), folder))
@@ -161,7 +173,11 @@ fn files_exist(document: &Node, scene: &Scene, source: &Source<'_>) -> Result<()
 }
 
 /// Why a path is no file, if it is none. `advice` is for a model that is missing.
-fn what_is_missing(file: &Path, expected: &str, advice: Option<String>) -> Option<String> {
+pub(crate) fn what_is_missing(
+    file: &Path,
+    expected: &str,
+    advice: Option<String>,
+) -> Option<String> {
     let path = file.display();
     match fs::metadata(file) {
         Ok(meta) if meta.is_dir() => {
@@ -330,10 +346,21 @@ impl Volume {
     fn read(table: &Reader<'_>) -> Self {
         let length = |name: &str| to_number(&table.value(name));
         let stops = table.tables("transfer", &keys::TRANSFER);
+        let per_particle = |name: &str| match table.value(name) {
+            Value::Text(text) if text == "auto" => None,
+            Value::Text(text) => Some(PerParticle::Attribute(text)),
+            number => to_number(&number).map(PerParticle::Number),
+        };
         Self {
             scalar: table.text("scalar"),
             kernel: match table.text("kernel").as_str() {
                 "sum" => VolumeKernel::Sum,
+                "sph" => VolumeKernel::Sph {
+                    smoothing_length: per_particle("smoothing_length")
+                        .unwrap_or_else(|| PerParticle::Attribute("auto".into())),
+                    mass: per_particle("mass"),
+                    density: table.written("density").map(|_| table.text("density")),
+                },
                 _ => VolumeKernel::Shepard,
             },
             radius: length("radius"),
@@ -345,14 +372,30 @@ impl Volume {
                 "auto" => Boundary::Auto,
                 name => Boundary::Attribute(name.to_owned()),
             },
-            transfer: stops
-                .iter()
-                .map(|stop| Stop {
-                    value: stop.number("value"),
-                    color: stop.vector("color"),
-                    extinction: stop.number("extinction"),
-                })
-                .collect(),
+            mode: match table.text("mode").as_str() {
+                "maximum" => VolumeMode::Maximum,
+                "average" => VolumeMode::Average,
+                "isosurface" => VolumeMode::Isosurface(table.number("iso")),
+                _ => VolumeMode::Emission,
+            },
+            transfer: match table.written("color_map") {
+                Some(_) => Transfer::Map {
+                    color_map: ColorMap::read(&table.text("color_map")),
+                    range: table.written_range("value_range"),
+                    extinction: table.pair("extinction"),
+                },
+                None => Transfer::Stops(stops.iter().map(Stop::read).collect()),
+            },
+        }
+    }
+}
+
+impl Stop {
+    fn read(table: &Reader<'_>) -> Self {
+        Self {
+            value: table.number("value"),
+            color: table.vector("color"),
+            extinction: table.number("extinction"),
         }
     }
 }

@@ -89,6 +89,19 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// A number or two, twice the one.
+    pub(crate) fn pair(&self, name: &str) -> [f64; 2] {
+        let value = self.value(name);
+        let ends = match &value {
+            Value::List(items) => items.iter().map(|item| to_number(&item.value)).collect(),
+            one => vec![to_number(one); 2],
+        };
+        match ends.as_slice() {
+            [Some(low), Some(high)] => [*low, *high],
+            _ => self.unlike("one or two numbers", name, &value),
+        }
+    }
+
     /// The value that was written, else the default.
     pub(crate) fn value(&self, name: &str) -> Value {
         if let Some(node) = self.written(name) {

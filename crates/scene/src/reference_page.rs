@@ -27,7 +27,7 @@ fn section(key: &Key, path: &str, out: &mut String) {
 
 fn write(table: &Table, path: &str, out: &mut String) -> std::fmt::Result {
     writeln!(out, "\n### `{}`\n\n{}", table.header, table.doc)?;
-    let whole = not_built(path).is_some() || path.starts_with("objects.volume.");
+    let whole = not_built(path).is_some();
     if whole {
         writeln!(out, "\nNot built yet.")?;
     }

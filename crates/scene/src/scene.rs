@@ -191,7 +191,7 @@ pub struct Object {
     pub volume: Option<Volume>,
 }
 
-/// A volume made of an object's points (docs/method.md, section 7). Lengths are scene units.
+/// A volume made of an object's points (docs/method.md, section 8). Lengths are scene units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Volume {
     /// The points' attribute that is shown.
@@ -206,17 +206,66 @@ pub struct Volume {
     pub step: Option<f64>,
     /// Which points carry the object's surface.
     pub boundary: Boundary,
-    /// At least one, ascending in value.
-    pub transfer: Vec<Stop>,
+    /// What a ray shows.
+    pub mode: VolumeMode,
+    /// What each scalar looks like.
+    pub transfer: Transfer,
+}
+
+/// What a ray through a volume shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum VolumeMode {
+    /// Emission and extinction along its way (\[T\] §6).
+    Emission,
+    /// The greatest scalar on its way, as a layer of one radius.
+    Maximum,
+    /// The mean scalar, all along its way.
+    Average,
+    /// The first place where the scalar is this.
+    Isosurface(f64),
+}
+
+/// Colour and extinction of a scalar.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Transfer {
+    /// Linear between stops, of which there is at least one, ascending in value.
+    Stops(Vec<Stop>),
+    /// The colours of a map.
+    Map {
+        /// Which.
+        color_map: ColorMap,
+        /// Scalars at its ends, the second greater; the attribute's own where `None`.
+        range: Option<[f64; 2]>,
+        /// σ at its ends, per scene unit.
+        extinction: [f64; 2],
+    },
+}
+
+/// What particles have, all the same or each its own.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PerParticle {
+    /// All this.
+    Number(f64),
+    /// Each what the attribute of this name says.
+    Attribute(String),
 }
 
 /// How a volume's points are blended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum VolumeKernel {
     /// The weighted mean (Eq. 3 of the paper).
     Shepard,
     /// The weighted sum.
     Sum,
+    /// Σ (m/ρ) A W(d, h) with Monaghan's cubic spline, which ends at 2h.
+    Sph {
+        /// h: a number in scene units, an attribute in the file's.
+        smoothing_length: PerParticle,
+        /// m; `None`: m/ρ is (h/1.2)³.
+        mass: Option<PerParticle>,
+        /// The attribute that has ρ; `None`: Σ m W itself is shown.
+        density: Option<String>,
+    },
 }
 
 /// Which points of a volume carry its surface.

@@ -75,9 +75,13 @@ fn property(key: &Key, path: &str) -> Json {
 fn kind(of: &Kind, path: &str) -> Map<String, Json> {
     match of {
         Kind::Table(inner) => table(inner, path),
-        Kind::Tables { table: inner, min, max } => as_map(json!({
-            "type": "array", "items": table(inner, path), "minItems": min, "maxItems": max,
-        })),
+        Kind::Tables { table: inner, min, max, in_file } => {
+            let list = json!({
+                "type": "array", "items": table(inner, path), "minItems": min, "maxItems": max,
+            });
+            let file = json!({ "type": "string", "minLength": 1 });
+            as_map(if *in_file { json!({ "anyOf": [list, file] }) } else { list })
+        }
         Kind::Announced => Map::new(),
         Kind::Bool => as_map(json!({ "type": "boolean" })),
         Kind::Integer { min, max, .. } => {
@@ -95,7 +99,7 @@ fn kind(of: &Kind, path: &str) -> Map<String, Json> {
             "type": "array", "items": { "type": "integer", "minimum": 1, "maximum": max },
             "minItems": 2, "maxItems": 2,
         })),
-        Kind::Range(range) => as_map(json!({
+        Kind::Range(range) | Kind::Pair(range) => as_map(json!({
             "type": "array", "items": number(range), "minItems": 2, "maxItems": 2,
         })),
         Kind::Prefixed(before, _) => as_map(json!({
@@ -115,7 +119,7 @@ impl Kind {
     fn unit(&self) -> Option<&'static str> {
         match self {
             Kind::Integer { unit, .. } => Some(*unit),
-            Kind::Number(range) | Kind::Vector(range) => Some(range.unit),
+            Kind::Number(range) | Kind::Vector(range) | Kind::Pair(range) => Some(range.unit),
             Kind::Size { .. } => Some("pixels"),
             Kind::Either(kinds) => kinds.iter().find_map(Kind::unit),
             _ => None,

@@ -2,8 +2,8 @@
 
 use crate::{
     Albedo, Boundary, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Normals, Object,
-    Polynomial, Projection, Refine, RenderSettings, Scene, Surface, TextureAxis, Volume,
-    VolumeKernel,
+    PerParticle, Polynomial, Projection, Refine, RenderSettings, Scene, Surface, TextureAxis,
+    Transfer, Volume, VolumeKernel, VolumeMode,
 };
 use std::fmt::{self, Write};
 
@@ -120,6 +120,7 @@ fn write_volume(out: &mut String, volume: &Volume) -> fmt::Result {
     let kernel = match volume.kernel {
         VolumeKernel::Shepard => "shepard",
         VolumeKernel::Sum => "sum",
+        VolumeKernel::Sph { .. } => "sph",
     };
     let boundary = match &volume.boundary {
         Boundary::None => "none",
@@ -130,11 +131,43 @@ fn write_volume(out: &mut String, volume: &Volume) -> fmt::Result {
     writeln!(out, "\n[objects.volume]")?;
     writeln!(out, "scalar = {}", quoted(&volume.scalar))?;
     writeln!(out, "kernel = \"{kernel}\"")?;
-    writeln!(out, "radius = {}", auto(volume.radius))?;
-    writeln!(out, "smoothing = {}", auto(volume.smoothing))?;
+    if let VolumeKernel::Sph { smoothing_length, mass, density } = &volume.kernel {
+        let written = |what: &PerParticle| match what {
+            PerParticle::Number(number) => format!("{number:?}"),
+            PerParticle::Attribute(name) => quoted(name),
+        };
+        writeln!(out, "smoothing_length = {}", written(smoothing_length))?;
+        let mass = mass.as_ref().map_or("\"auto\"".into(), written);
+        writeln!(out, "mass = {mass}")?;
+        if let Some(name) = density {
+            writeln!(out, "density = {}", quoted(name))?;
+        }
+    } else {
+        writeln!(out, "radius = {}", auto(volume.radius))?;
+        writeln!(out, "smoothing = {}", auto(volume.smoothing))?;
+    }
     writeln!(out, "step = {}", auto(volume.step))?;
+    match volume.mode {
+        VolumeMode::Emission => writeln!(out, "mode = \"emission\"")?,
+        VolumeMode::Maximum => writeln!(out, "mode = \"maximum\"")?,
+        VolumeMode::Average => writeln!(out, "mode = \"average\"")?,
+        VolumeMode::Isosurface(iso) => {
+            writeln!(out, "mode = \"isosurface\"")?;
+            writeln!(out, "iso = {iso:?}")?;
+        }
+    }
     writeln!(out, "boundary = {}", quoted(boundary))?;
-    for stop in &volume.transfer {
+    let stops = match &volume.transfer {
+        Transfer::Stops(stops) => stops,
+        Transfer::Map { color_map, range, extinction } => {
+            writeln!(out, "color_map = \"{}\"", color_map.name())?;
+            if let Some(range) = range {
+                writeln!(out, "value_range = {range:?}")?;
+            }
+            return writeln!(out, "extinction = {extinction:?}");
+        }
+    };
+    for stop in stops {
         writeln!(out, "\n[[objects.volume.transfer]]")?;
         writeln!(out, "value = {:?}", stop.value)?;
         writeln!(out, "color = {:?}", stop.color)?;

@@ -22,7 +22,9 @@ fn info_of_a_point_file_is_one_json_object() {
     let ran = run_in(folder.path(), &["info", "ball.ply", "--json"]).succeeds();
     assert_eq!(ran.stderr, "");
     let info: Value = serde_json::from_str(&ran.stdout).expect("JSON alone on stdout");
-    assert_eq!(info["attributes"]["green"], json!({ "min": 100.0, "max": 100.0 }));
+    let green = &info["attributes"]["green"];
+    assert_eq!((&green["min"], &green["max"]), (&json!(100.0), &json!(100.0)));
+    assert_eq!(green["histogram"]["counts"][0], 100);
     let text = run_in(folder.path(), &["info", "ball.ply"]).succeeds().stdout;
     assert!(text.contains("100") && text.contains("green"), "{text}");
 }

@@ -5,8 +5,8 @@ use crate::state::StateImages;
 use crate::volumes::VolumeBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    MARCH_CELLS, MARCH_POINTS, MARCH_STATE, MARCH_STOPS, MARCH_VOLUMES, MarchParams, STATE_IN,
-    TRACE_HITS, TRACE_LIVE, WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS,
+    MARCH_CELLS, MARCH_LENGTHS, MARCH_POINTS, MARCH_STATE, MARCH_STOPS, MARCH_VOLUMES, MarchParams,
+    STATE_IN, TRACE_HITS, TRACE_LIVE, WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -50,6 +50,7 @@ impl March {
                 MARCH_VOLUMES,
                 MARCH_CELLS,
                 MARCH_POINTS,
+                MARCH_LENGTHS,
                 MARCH_STOPS,
                 MARCH_STATE,
             ];
@@ -75,6 +76,7 @@ impl March {
             .buffer(MARCH_VOLUMES, &io.volumes.infos)
             .buffer(MARCH_CELLS, &io.volumes.cells)
             .buffer(MARCH_POINTS, &io.volumes.points)
+            .buffer(MARCH_LENGTHS, &io.volumes.inverse_lengths)
             .buffer(MARCH_STOPS, &io.volumes.stops)
             .buffer(MARCH_STATE, &io.volumes.marches);
         let pass = match io.marched {

@@ -1,0 +1,42 @@
+//! Transfer functions in files of their own, which scenes share.
+
+use crate::SceneError;
+use crate::check::check_as;
+use crate::document::{Node, Value};
+use crate::error::{Problem, Source};
+use crate::keys::TRANSFER_FILE;
+use crate::load::{document_of, read_text, what_is_missing};
+use std::path::Path;
+
+/// Puts the stops of every file that a volume names as its `transfer` in the name's place. Fails at the
+/// first file that is no transfer function; says which are missing.
+pub(crate) fn insert(document: &mut Node, folder: &Path) -> Result<Vec<Problem>, SceneError> {
+    let mut problems = Vec::new();
+    let Some(Value::List(objects)) = document.get_mut("objects").map(|node| &mut node.value) else {
+        return Ok(problems);
+    };
+    for (index, object) in objects.iter_mut().enumerate() {
+        let written = object.get_mut("volume").and_then(|volume| volume.get_mut("transfer"));
+        let Some(node) = written else { continue };
+        let Value::Text(name) = &node.value else { continue };
+        let file = folder.join(name);
+        if let Some(message) = what_is_missing(&file, "a file of a transfer function", None) {
+            let path = format!("objects[{index}].volume.transfer");
+            problems.push(Problem { origin: node.origin, path, message });
+        } else {
+            *node = stops_of(&file)?.moved(node.origin);
+        }
+    }
+    Ok(problems)
+}
+
+/// The list of stops in a file.
+fn stops_of(file: &Path) -> Result<Node, SceneError> {
+    let text = read_text(file)?;
+    let mut document = document_of(&text, file)?;
+    let problems = check_as(&document, &TRANSFER_FILE);
+    match document.get_mut("transfer") {
+        Some(stops) if problems.is_empty() => Ok(stops.clone()),
+        _ => Err(SceneError::problems(problems, &Source { file, text: &text, overrides: &[] })),
+    }
+}
