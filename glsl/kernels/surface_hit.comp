@@ -27,16 +27,28 @@ layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo obj
 layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 
+#define ASKED_AT_ONCE 32u
 #define MOST_BLENDED 4096u // points of a cell that are asked: a cell of very many says enough
 
-// The mean of the normals of the object's polynomials around x, by their weights.
+// The mean of the normals of the object's polynomials around x, by their weights. First the trust balls
+// that hold x, up to 32 into a bit mask, then their normals: few of a cell do.
 vec3 blended_normal(vec3 x, vec3 normal, uint object) {
     uvec2 range = cells[cell_id(grid, cell_of(grid, x))];
     uint end = min(range.y, range.x + MOST_BLENDED);
     vec3 sum = 1e-6 * normal; // where nothing has a weight, the hit's own
-    for (uint i = range.x; i < end; ++i) {
-        Polynomial p = polynomials[slots[i]];
-        if (p.object == object) sum += weighted_normal(p, x, normal);
+    for (uint first = range.x; first < end; first += ASKED_AT_ONCE) {
+        uint count = min(end - first, ASKED_AT_ONCE);
+        uint holding = 0u;
+        for (uint i = 0u; i < count; ++i) {
+            vec4 ball = polynomials[slots[first + i]].center_trust;
+            vec3 y = x - ball.xyz;
+            holding |= dot3(y, y) < ball.w * ball.w ? 1u << i : 0u;
+        }
+        while (holding != 0u) {
+            Polynomial p = polynomials[slots[first + uint(findLSB(holding))]];
+            holding &= holding - 1u;
+            if (p.object == object) sum += weighted_normal(p, x, normal);
+        }
     }
     return normalize3(sum);
 }
