@@ -3,7 +3,9 @@
 // reads   the ray state, grid, polynomials
 //         cells            first and past-the-last entry of each cell in slots
 //         slots            the points of each cell
-// writes  the ray state    every ray, also those that are done: the images swap after this
+//         live_rays        those that live, where few of a wave do
+// writes  the ray state    every ray, also those that are done: the images swap after this. Of listed rays
+//                          in place, theirs alone
 //         live             how many rays have not ended yet
 // runs    one invocation per ray of the wave; dispatched until no ray lives
 // twin    crates/reference/src/grid_trace.rs
@@ -31,6 +33,7 @@ layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
 layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
+layout(std430, binding = LIVE_RAYS) readonly buffer LiveRays { uint live_rays[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 
 #define BATCH 32u // points tested before any is solved: one bit each
@@ -38,6 +41,7 @@ layout(push_constant) uniform Push { TraceParams params; };
 void main() {
     uint index = list_index();
     if (index >= params.ray_count) return;
+    if (params.listed != 0u) index = live_rays[index];
     Ray ray = load_ray(index);
 
     vec3 o = ray.origin, d = ray.direction;

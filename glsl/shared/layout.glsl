@@ -118,6 +118,8 @@
 #define MARCH_STOPS 36
 #define MARCH_STATE 37
 #define MARCH_LENGTHS 38
+#define LIVE_OFFSETS 39
+#define LIVE_RAYS 40
 #define SHADE_IMAGES 30
 #define SHADE_TEXELS 31
 
@@ -253,11 +255,12 @@ struct CameraParams {    // 96 bytes
     uint seed;           // 92
 };
 
-struct TraceParams {     // 16 bytes
-    uint ray_count;      //  0  of the wave
+struct TraceParams {     // 20 bytes
+    uint ray_count;      //  0  of the wave, or of those that are listed
     uint cells;          //  4  K: how many cells a ray may cross in this pass
     uint work;           //  8  loop iterations a ray may spend in this pass
     uint any_hit;        // 12  1: any hit ends a ray
+    uint listed;         // 16  1: rays are those of a list, and their state stays where it is
 };
 
 // Distances between nearest and farthest, ranked by their bits.

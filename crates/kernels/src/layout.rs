@@ -204,6 +204,10 @@ constants! {
     MARCH_STATE = 37;
     /// Binding of `march`: 1/h by point, if any volume has particles.
     MARCH_LENGTHS = 38;
+    /// Binding of `mark_live` and `list_live`: whether each ray lives, then offsets of those.
+    LIVE_OFFSETS = 39;
+    /// Binding of `list_live` and `grid_trace`: the rays that live.
+    LIVE_RAYS = 40;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
     VOLUME_SHEPARD = 0;
     /// [`VolumeInfo::kernel`] of the weighted sum.
@@ -494,7 +498,7 @@ gpu_layout!(CameraParams, 96, {
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct TraceParams {
-    /// Rays of the wave.
+    /// Rays of the wave, or of those that are listed.
     pub ray_count: u32,
     /// K: cells a ray may cross in this pass.
     pub cells: u32,
@@ -502,8 +506,10 @@ pub struct TraceParams {
     pub work: u32,
     /// 1: any hit ends a ray.
     pub any_hit: u32,
+    /// 1: rays are those of a list, and their state stays where it is.
+    pub listed: u32,
 }
-gpu_layout!(TraceParams, 16, { ray_count: 0, cells: 4, work: 8, any_hit: 12 });
+gpu_layout!(TraceParams, 20, { ray_count: 0, cells: 4, work: 8, any_hit: 12, listed: 16 });
 
 /// Distances between nearest and farthest, ranked by their bits.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

@@ -62,8 +62,12 @@ modules! {
     grid_trace_texels,
     /// The rays that hit a diffuse surface, one after another.
     list_lit,
+    /// The rays of a wave that have not ended, one after another.
+    list_live,
     /// The points of each cell with their positions.
     list_points,
+    /// Which rays of a wave have not ended.
+    mark_live,
     /// Rays through volumes.
     march,
     /// Shadow rays through volumes.

@@ -9,8 +9,8 @@ use crate::RenderError;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
     AlbedoIo, CameraRays, CameraRaysIo, Classify, ClassifyIo, DiscTrace, DiscTraceIo, GridTrace,
-    GridTraceIo, March, MarchIo, Marched, Records, Refine, RefineIo, Scatter, ScatterIo, Shade,
-    ShadeIo, ShadowRays, ShadowRaysIo, Start, SurfaceHit, SurfaceHitIo,
+    GridTraceIo, ListLive, March, MarchIo, Marched, Records, Refine, RefineIo, Scatter, ScatterIo,
+    Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start, SurfaceHit, SurfaceHitIo,
 };
 use crate::samples::Samples;
 use crate::state::RayState;
@@ -28,6 +28,9 @@ use std::time::{Duration, Instant};
 /// Loop iterations that a ray may spend in one pass. lavapipe silently stops all loops of a shader
 /// group at 65 535 iterations; eight rays share that count there, and each may go 64 over its share.
 const WORK_PER_PASS: u32 = 7_000;
+
+/// Rays are listed where no more than one of so many of the last pass lives.
+const LISTED_SHARE: u32 = 2;
 
 const EMPTY_PIXEL: FilmPixel = FilmPixel {
     color: [0.0; 4],
@@ -95,11 +98,12 @@ struct Passes {
     shade: Shade,
     scatter: Scatter,
     march: March,
+    list_live: ListLive,
     scan: Scan,
 }
 
 impl Passes {
-    fn new(device: &Arc<Device>, records: Records) -> Result<Self, RenderError> {
+    fn new(device: &Arc<Device>, records: Records, rays: u32) -> Result<Self, RenderError> {
         Ok(Self {
             camera_rays: CameraRays::new(device)?,
             disc_trace: DiscTrace::new(device, records)?,
@@ -111,6 +115,7 @@ impl Passes {
             shade: Shade::new(device)?,
             scatter: Scatter::new(device)?,
             march: March::new(device)?,
+            list_live: ListLive::new(device, rays)?,
             scan: Scan::new(device)?,
         })
     }
@@ -178,7 +183,7 @@ impl Renderer {
             state: RayState::new(device, rays)?,
             shadows: RayState::new(device, shadows)?,
             discs: Discs::new(device, plan.cloud.points.len() as u32)?,
-            passes: Passes::new(device, records)?,
+            passes: Passes::new(device, records, rays)?,
             recorder: Recorder::new(device)?,
         })
     }
@@ -243,7 +248,7 @@ impl Renderer {
             false => Traced::Camera,
         };
         while params.ray_count > 0 {
-            self.trace_to_the_end(plan, params.ray_count, traced, stats, watch)?;
+            self.trace_to_the_end(plan, [params.ray_count; 2], traced, stats, watch)?;
             traced = if traced == Traced::Scattered { traced } else { Traced::Camera };
             self.settle_hits(plan, params.ray_count, traced, stats, watch)?;
             self.march(plan, params.ray_count, false, stats, watch)?;
@@ -287,22 +292,23 @@ impl Renderer {
         Ok(lists.is_some())
     }
 
-    /// Passes until no ray lives: the paper's loop on the CPU.
+    /// Passes until no ray lives: the paper's loop on the CPU. Of the wave's rays, `alive` are known to live
+    /// at first. Once few do, passes are over a list of them.
     fn trace_to_the_end(
         &mut self,
         plan: &Plan,
-        ray_count: u32,
+        [ray_count, mut alive]: [u32; 2],
         traced: Traced,
         stats: &mut FrameStats,
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
         let cells = if plan.cells_per_pass == 0 { u32::MAX } else { plan.cells_per_pass };
         let any_hit = u32::from(traced == Traced::Shadows);
-        let params = TraceParams { ray_count, cells, work: WORK_PER_PASS, any_hit };
+        let wave = TraceParams { ray_count, cells, work: WORK_PER_PASS, any_hit, listed: 0 };
         let state = if traced == Traced::Shadows { &mut self.shadows } else { &mut self.state };
-        let (surfaces, live) = (&self.surfaces, &self.live);
-        let mut left = [u32::MAX];
-        while left != [0] {
+        let (surfaces, live, live_rays) = (&self.surfaces, &self.live, &self.passes.list_live.rays);
+        let mut params = wave;
+        while alive > 0 {
             if watch.interrupted() {
                 return Err(RenderError::Interrupted);
             }
@@ -313,18 +319,26 @@ impl Renderer {
                     self.passes.disc_trace.record(&mut self.recorder, io, tile_size, &params);
                 }
                 _ => {
+                    if alive <= params.ray_count / LISTED_SHARE {
+                        self.passes.list_live.record(&mut self.recorder, &state.current, &wave);
+                        params = TraceParams { ray_count: alive, listed: 1, ..wave };
+                    }
                     let from = match traced {
                         Traced::ByDiscs(_) | Traced::Camera => Start::Camera,
                         Traced::Scattered | Traced::Shadows => Start::Surface,
                     };
-                    let io = GridTraceIo { surfaces, state, live };
+                    let io = GridTraceIo { surfaces, state, live, live_rays };
                     self.passes.grid_trace.record(&mut self.recorder, io, from, &params);
                 }
             }
             stats.add_kernels(&self.recorder.submit()?.passes);
-            state.swap();
+            if params.listed == 0 {
+                state.swap();
+            }
             stats.passes += 1;
+            let mut left = [0];
             live.read(0, &mut left)?;
+            [alive] = left;
             watch.done(stats.rays);
         }
         Ok(())
@@ -340,7 +354,7 @@ impl Renderer {
         stats: &mut FrameStats,
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
-        let params = TraceParams { ray_count, cells: 0, work: 0, any_hit: 0 };
+        let params = TraceParams { ray_count, cells: 0, work: 0, any_hit: 0, listed: 0 };
         let bytes = u64::from(ray_count) * size_of::<Hit>() as u64;
         self.recorder.fill(&self.hits, 0, bytes, 0);
         loop {
@@ -357,13 +371,14 @@ impl Renderer {
                 return Ok(()); // recorded; what follows submits it
             }
             let [pending, _] = self.submit_and_count(stats)?;
-            if self.refine_hits(pending, &params, stats, watch)? == 0 {
+            let rejected = self.refine_hits(pending, &params, stats, watch)?;
+            if rejected == 0 {
                 return Ok(());
             }
             let (surfaces, state) = (&self.surfaces, &self.state.current);
             let (rec, hits) = (&mut self.recorder, &self.hits);
             self.passes.refine.record_resume(rec, surfaces, state, hits, &params);
-            self.trace_to_the_end(plan, ray_count, traced, stats, watch)?;
+            self.trace_to_the_end(plan, [ray_count, rejected], traced, stats, watch)?;
         }
     }
 
@@ -508,7 +523,7 @@ impl Renderer {
             let params = WaveParams { light, ..*params };
             self.passes.shadow_rays.record(&mut self.recorder, io, &params);
             self.shadows.swap();
-            self.trace_to_the_end(plan, params.ray_count, Traced::Shadows, stats, watch)?;
+            self.trace_to_the_end(plan, [params.ray_count; 2], Traced::Shadows, stats, watch)?;
             self.march(plan, params.ray_count, true, stats, watch)?;
         }
         let io = ShadeIo {

@@ -4,8 +4,8 @@ use super::{bind_state, line, state_bindings};
 use crate::state::RayState;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    STATE_IN, STATE_OUT, TRACE_CELLS, TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS, TRACE_SLOTS,
-    TraceParams,
+    LIVE_RAYS, STATE_IN, STATE_OUT, TRACE_CELLS, TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS,
+    TRACE_SLOTS, TraceParams,
 };
 use kernels::spirv;
 use points::device::Surfaces;
@@ -42,6 +42,8 @@ pub(crate) struct GridTraceIo<'a> {
     pub state: &'a RayState,
     /// One u32, zero before: how many rays have not ended.
     pub live: &'a Buffer,
+    /// Those that have not ended, for passes over them alone.
+    pub live_rays: &'a Buffer,
 }
 
 /// Where the rays of a wave start.
@@ -74,7 +76,7 @@ impl GridTrace {
         };
         let mut bindings = state_bindings(STATE_IN).to_vec();
         bindings.extend(state_bindings(STATE_OUT));
-        let buffers = [TRACE_INFO, TRACE_CELLS, TRACE_SLOTS, TRACE_LIVE];
+        let buffers = [TRACE_INFO, TRACE_CELLS, TRACE_SLOTS, TRACE_LIVE, LIVE_RAYS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         bindings.push((TRACE_POLYNOMIALS, polynomials));
         let params = size_of::<TraceParams>();
@@ -82,7 +84,7 @@ impl GridTrace {
         Ok(Self { from_camera: kernel(&modules[0])?, leaving: kernel(&modules[1])? })
     }
 
-    /// Records one pass; the caller then swaps the ray state.
+    /// Records one pass; the caller then swaps the ray state, unless rays are listed.
     pub fn record(
         &self,
         rec: &mut Recorder,
@@ -96,12 +98,15 @@ impl GridTrace {
         };
         let pass = rec.pass(Self::NAME, kernel);
         let pass = bind_state(pass, STATE_IN, &io.state.current);
-        bind_state(pass, STATE_OUT, &io.state.next)
+        // Listed rays stay where they are, and the others with them.
+        let out = if params.listed != 0 { &io.state.current } else { &io.state.next };
+        bind_state(pass, STATE_OUT, out)
             .buffer(TRACE_INFO, &io.surfaces.grid_info)
             .buffer(TRACE_CELLS, &io.surfaces.cells)
             .buffer(TRACE_SLOTS, &io.surfaces.slots)
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
             .buffer(TRACE_LIVE, io.live)
+            .buffer(LIVE_RAYS, io.live_rays)
             .push(params)
             .dispatch(line(params.ray_count));
     }
