@@ -66,12 +66,12 @@ modules! {
     list_live,
     /// The points of each cell with their positions.
     list_points,
-    /// Which rays of a wave have not ended.
-    mark_live,
     /// Rays through volumes.
     march,
     /// Shadow rays through volumes.
     march_shadows,
+    /// Which rays of a wave have not ended.
+    mark_live,
     /// One iteration of each pending hit towards the point set surface.
     refine,
     /// The same, reading points through a uniform texel buffer.
