@@ -8,7 +8,7 @@
 //         film             counts
 //         tally            shadow rays
 // runs    one invocation per diffuse hit
-// twin    crates/reference/src/shadow_rays.rs
+// twin    crates/reference/src/shade.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS

@@ -1,6 +1,6 @@
 // film: what a ray brings back to its pixel.
 //
-// twin  crates/reference/src/film.rs
+// twin  crates/reference/src/wave.rs
 // Each channel of a pixel is written by the one ray that carries it to its end. Counts are integers,
 // so that adding them in any order gives the same. Whoever includes this has the buffer `film`.
 #ifndef FILM_GLSL

@@ -1,6 +1,6 @@
 // gather: what a light brings, once the shadow rays towards it have ended.
 //
-// twin  crates/reference/src/shadow_rays.rs
+// twin  crates/reference/src/wave.rs
 // Whoever includes this has buffers `light_sums` and `film`, and reads the shadow rays' state.
 #ifndef GATHER_GLSL
 #define GATHER_GLSL

@@ -19,26 +19,32 @@ pub(crate) fn own_colors(colors: &[[f32; 3]]) -> Vec<[f32; 3]> {
     colors.iter().map(|color| color.map(clean)).collect()
 }
 
+/// The values of an attribute, or of a coordinate where no attribute is called x, y or z. Otherwise the names
+/// that would do.
+pub(crate) fn attribute_values(set: &PointSet, name: &str) -> Result<Vec<f64>, String> {
+    let axes = ["x", "y", "z"];
+    match (set.attribute(name), axes.iter().position(|axis| *axis == name)) {
+        (Some(values), _) => Ok(values.iter().collect()),
+        (None, Some(axis)) => Ok(set.positions.iter().map(|p| p[axis]).collect()),
+        (None, None) => {
+            let known = set.attributes.iter().map(|attribute| attribute.name.as_str());
+            Err(known.chain(axes).collect::<Vec<_>>().join(", "))
+        }
+    }
+}
+
 /// The colours of an attribute of the object's points, linear. What is no number is black.
 pub(crate) fn attribute_colors(
     object: &Object,
     set: &PointSet,
     (name, map, range): (&str, ColorMap, Option<[f64; 2]>),
 ) -> Result<Vec<[f32; 3]>, PlanError> {
-    let axis = ["x", "y", "z"].iter().position(|axis| *axis == name);
-    let values: Vec<f64> = match (set.attribute(name), axis) {
-        (Some(values), _) => values.iter().collect(),
-        (None, Some(axis)) => set.positions.iter().map(|p| p[axis]).collect(),
-        (None, None) => {
-            let known = set.attributes.iter().map(|attribute| attribute.name.as_str());
-            return Err(PlanError::NoAttribute {
-                name: object.name.clone(),
-                attribute: name.to_owned(),
-                file: object.points.display().to_string(),
-                known: known.chain(["x", "y", "z"]).collect::<Vec<_>>().join(", "),
-            });
-        }
-    };
+    let values = attribute_values(set, name).map_err(|known| PlanError::NoAttribute {
+        name: object.name.clone(),
+        attribute: name.to_owned(),
+        file: object.points.display().to_string(),
+        known,
+    })?;
     let own_range = || {
         let finite = values.iter().copied().filter(|value| value.is_finite());
         finite.fold(None, |range: Option<[f64; 2]>, value| {

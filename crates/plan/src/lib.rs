@@ -9,36 +9,34 @@ mod camera;
 mod colors;
 mod diagnostic;
 mod discs;
+mod error;
 mod filter;
 mod images;
 mod inside;
 mod isolated;
+mod objects;
 mod picture;
 mod volumes;
 
 pub use camera::View;
 pub use diagnostic::Diagnostic;
 pub use discs::{MAX_DISC_PAIRS, screen_tiles};
+pub use error::PlanError;
 pub use images::{Cleaned, SceneImages};
 pub use picture::{Picture, Rays};
 pub use volumes::Volumes;
 
 use images::{ImageList, Use};
 use kernels::layout::{
-    self, BackgroundInfo, CHANNELS_ALL, CameraParams, FIT_FULL, FIT_INCOMPLETE, FitParams,
-    ImageInfo, LIGHT_DIRECTIONAL, LIGHT_POINT, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR,
-    MEDIA_WORDS, NONE, ObjectInfo, WaveParams,
+    self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, LIGHT_DIRECTIONAL,
+    LIGHT_POINT, MATERIAL_DIFFUSE, MEDIA_WORDS, NONE, ObjectInfo, WaveParams,
 };
-use points::{Cloud, CloudError, ObjectPoints, PointSet};
+use objects::{add_image, fit_params, object_infos};
+use points::{Cloud, CloudError, ObjectPoints, PointSet, bounds_of};
 pub use scene::Primary;
-use scene::{
-    Albedo, FeatureSize, Fresnel, Light, Material, MaterialKind, Normals, Object, Polynomial,
-    Refine, Scene, TextureAxis, Up,
-};
+use scene::{Fresnel, Light, Object, Scene, Up};
 use std::sync::Arc;
 
-/// Albedo of objects whose points have no colours and whose material names none.
-const DEFAULT_ALBEDO: [f32; 3] = [0.8; 3];
 /// Columns of a tile at most: a row of the ray state's images.
 const TILE_WIDTH: u32 = layout::STATE_ROW;
 /// Rays of a wave at most: their state is 128 MiB.
@@ -119,122 +117,6 @@ pub struct Plan {
     provenance: film::Provenance,
 }
 
-/// What is wrong with a scene once its points are known.
-#[derive(Debug, thiserror::Error)]
-pub enum PlanError {
-    /// The points cannot be rendered together.
-    #[error(transparent)]
-    Points(#[from] CloudError),
-    /// A material asks for colours that the file lacks.
-    #[error(
-        "object '{name}': material.albedo is \"points\" but {file} has no colours; give a colour \
-         such as [0.8, 0.8, 0.8] or leave albedo out"
-    )]
-    NoColors {
-        /// The object.
-        name: String,
-        /// Its point file.
-        file: String,
-    },
-    /// A volume asks for an attribute that the file lacks.
-    #[error(
-        "object '{name}': its volume asks for the attribute '{attribute}' but {file} has none of that name; \
-         it has {known}"
-    )]
-    NoVolumeAttribute {
-        /// The object.
-        name: String,
-        /// What was asked for.
-        attribute: String,
-        /// Its point file.
-        file: String,
-        /// Names that would do.
-        known: String,
-    },
-    /// A step so short that rays would never end.
-    #[error(
-        "a step of {step:e} scene units is too short: a ray through the scene's volumes would take up to \
-         {samples:.1e} samples, and 1.6e7 is the limit; lengthen objects.volume.step"
-    )]
-    TooManySamples {
-        /// The shortest step of a volume.
-        step: f32,
-        /// Along the longest ray.
-        samples: f64,
-    },
-    /// A volume that has to be the only one, among others.
-    #[error(
-        "object '{name}': its volume's mode is not \"emission\", for which it has to be the scene's only volume, \
-         but there are {count}; render them one by one, or leave mode out"
-    )]
-    SeveralVolumes {
-        /// The object.
-        name: String,
-        /// Volumes of the scene.
-        count: usize,
-    },
-    /// A material asks for an attribute that the file lacks.
-    #[error(
-        "object '{name}': material.albedo is \"attribute:{attribute}\" but {file} has no such attribute; it \
-         has {known}"
-    )]
-    NoAttribute {
-        /// The object.
-        name: String,
-        /// What was asked for.
-        attribute: String,
-        /// Its point file.
-        file: String,
-        /// Names that would do.
-        known: String,
-    },
-    /// An attribute without one finite value.
-    #[error(
-        "object '{name}': material.albedo is \"attribute:{attribute}\" but none of its values in {file} is \
-         finite; take another attribute or give value_range"
-    )]
-    NoValues {
-        /// The object.
-        name: String,
-        /// What was asked for.
-        attribute: String,
-        /// Its point file.
-        file: String,
-    },
-    /// A texture by u and v for points that have none.
-    #[error(
-        "object '{name}': material.texture_axis is \"uv\" but {file} has no attributes u and v (nor s and t, \
-         texture_u and texture_v); project the texture along \"x\", \"y\" or \"z\""
-    )]
-    NoPlaces {
-        /// The object.
-        name: String,
-        /// Its point file.
-        file: String,
-    },
-    /// More texels than 32 bits can count.
-    #[error("the images of the scene, with {0}, are over 4294967295 numbers; make them smaller")]
-    TooManyTexels(String),
-    /// A crop that is not inside the picture.
-    #[error(
-        "--crop {x},{y},{width},{height} does not lie inside the picture of {image_width}x{image_height} \
-         pixels; give X,Y,W,H with W and H at least 1",
-        x = .crop.origin[0], y = .crop.origin[1], width = .crop.size[0], height = .crop.size[1],
-        image_width = .image[0], image_height = .image[1]
-    )]
-    Crop {
-        /// What was asked for.
-        crop: Window,
-        /// Columns and rows of the picture.
-        image: [u32; 2],
-    },
-    /// More colours than 32 bits of offset can count.
-    #[error(
-        "the scene has {0} coloured points but at most 1000000000 are supported; thin the point sets"
-    )]
-    TooManyColors(usize),
-}
-
 impl Plan {
     /// Plans a render of `scene`, whose objects have the point sets `sets`, in order, and which names
     /// `images`. `crop` is what of the picture to render, all of it when `None`; `up` turns the view
@@ -266,7 +148,7 @@ impl Plan {
             .zip(&surface_sets)
             .map(|(positions, set)| ObjectPoints { positions, file_index: &set.file_index })
             .collect();
-        let bounds = bounds_of(&world).ok_or(CloudError::Empty)?;
+        let bounds = bounds_of(world.iter().flatten()).ok_or(CloudError::Empty)?;
         let cloud = Cloud::within(bounds, &object_points)?;
         let volumes = volumes::plan_volumes(scene, &sets, &world, cloud.origin)?;
         let fits = scene
@@ -464,15 +346,6 @@ fn in_world(scene: &Scene, sets: &[Arc<PointSet>]) -> Vec<Vec<[f64; 3]>> {
     scene.objects.iter().zip(sets).map(placed).collect()
 }
 
-/// The box around all points.
-fn bounds_of(world: &[Vec<[f64; 3]>]) -> Option<[[f64; 3]; 2]> {
-    let mut all = world.iter().flatten();
-    let &first = all.next()?;
-    Some(all.fold([first; 2], |[low, high], p| {
-        [[0, 1, 2].map(|i| low[i].min(p[i])), [0, 1, 2].map(|i| high[i].max(p[i]))]
-    }))
-}
-
 /// The sets without the points that their objects drop, and how many those are.
 fn drop_isolated(
     scene: &Scene,
@@ -492,189 +365,6 @@ fn drop_isolated(
         counts.push(dropped);
     }
     Ok((kept, counts))
-}
-
-fn kind_of(polynomial: Polynomial) -> u32 {
-    match polynomial {
-        Polynomial::Full => FIT_FULL,
-        Polynomial::Incomplete => FIT_INCOMPLETE,
-    }
-}
-
-/// Distance from the centroid of k neighbours at which the surface ends, over their reach: half a spacing
-/// beyond a straight rim. The spacing is less of the reach where there are more.
-fn rim_limit(neighbors: u32) -> f32 {
-    (0.37 + 0.4 / f64::from(neighbors).sqrt()) as f32
-}
-
-fn fit_params(object: &Object, index: u32, cloud: &Cloud) -> FitParams {
-    let slots = cloud.objects[index as usize];
-    let neighbors = object.surface.neighbors.min(slots.count.saturating_sub(1)).max(1);
-    FitParams {
-        first_slot: slots.first_slot,
-        point_count: slots.count,
-        neighbors,
-        polynomial: kind_of(object.surface.polynomial),
-        feature_size: match object.surface.feature_size {
-            FeatureSize::Adaptive => 0.0,
-            FeatureSize::Smoothed => -1.0,
-            FeatureSize::Constant(h) => h as f32,
-        },
-        trust: object.surface.trust as f32,
-        object: index,
-        first_listed: slots.first_slot,
-        weight_scale: (1.0 / object.surface.weight_width) as f32,
-        close_gaps: u32::from(object.surface.close_gaps),
-        rim_limit: if object.surface.boundary_clip { rim_limit(neighbors) } else { 0.0 },
-    }
-}
-
-fn object_infos(
-    scene: &Scene,
-    sets: &[Arc<PointSet>],
-    cloud: &Cloud,
-    images: &SceneImages,
-    list: &mut ImageList,
-) -> Result<(Vec<ObjectInfo>, Vec<f32>), PlanError> {
-    let mut colors: Vec<f32> = Vec::new();
-    let mut infos = Vec::new();
-    for (index, (object, set)) in scene.objects.iter().zip(sets).enumerate() {
-        let values = point_values(object, set)?;
-        let (mut texture, mut rows) = (NONE, [[0.0; 4]; 2]);
-        if let (MaterialKind::Diffuse, Albedo::Texture { file, axis }) =
-            (object.material.kind, &object.material.albedo)
-        {
-            let image = images.textures.get(index).and_then(Option::as_ref);
-            texture = add_image(list, image, file, Use::Texture)?;
-            let axis = axis.unwrap_or(TextureAxis::Y);
-            rows = colors::projection(axis, set, &object.transform, cloud.origin);
-        }
-        let optics = Optics::of(&object.material);
-        infos.push(ObjectInfo {
-            albedo: optics.albedo,
-            first_color: match values {
-                PointValues::None => NONE,
-                _ => colors.len() as u32,
-            },
-            first_slot: cloud.objects[index].first_slot,
-            polynomial: kind_of(object.surface.polynomial),
-            max_iterations: match object.surface.refine {
-                Refine::None => 0,
-                Refine::Project { max_iterations, .. } => max_iterations,
-            },
-            tolerance: match object.surface.refine {
-                Refine::None => 0.0,
-                Refine::Project { tolerance, .. } => tolerance as f32,
-            },
-            slot_count: cloud.objects[index].count,
-            weight_scale: (1.0 / object.surface.weight_width) as f32,
-            blends: u32::from(object.surface.normals == Normals::Blended),
-            material: optics.material,
-            ior: optics.ior,
-            priority: optics.priority,
-            absorption: optics.absorption,
-            texture,
-            texture_u: rows[0],
-            texture_v: rows[1],
-        });
-        match values {
-            PointValues::None => {}
-            PointValues::Colors(values) => {
-                colors.extend(cloud.by_slot(index, &values).iter().flatten());
-            }
-            PointValues::Places(values) => {
-                colors.extend(cloud.by_slot(index, &values).iter().flatten());
-            }
-        }
-        if colors.len() > 3_000_000_000 {
-            return Err(PlanError::TooManyColors(colors.len() / 3));
-        }
-    }
-    Ok((infos, colors))
-}
-
-/// What kernels take of a material.
-struct Optics {
-    albedo: [f32; 3],
-    material: u32,
-    ior: [f32; 3],
-    priority: i32,
-    absorption: [f32; 3],
-}
-
-impl Optics {
-    fn of(material: &Material) -> Self {
-        let f32s = |v: [f64; 3]| v.map(|x| x as f32);
-        let albedo = match material.albedo {
-            Albedo::Color(color) => f32s(color),
-            _ => DEFAULT_ALBEDO,
-        };
-        let diffuse = Self {
-            albedo,
-            material: MATERIAL_DIFFUSE,
-            ior: [1.0; 3],
-            priority: 0,
-            absorption: [0.0; 3],
-        };
-        match material.kind {
-            MaterialKind::Diffuse => diffuse,
-            MaterialKind::Mirror { reflectance } => {
-                Self { albedo: f32s(reflectance), material: MATERIAL_MIRROR, ..diffuse }
-            }
-            MaterialKind::Glass { ior, priority, absorption } => Self {
-                material: MATERIAL_GLASS,
-                ior: f32s(ior),
-                priority,
-                absorption: f32s(absorption),
-                ..diffuse
-            },
-        }
-    }
-}
-
-/// What the points of an object have that its albedo takes.
-enum PointValues {
-    None,
-    Colors(Vec<[f32; 3]>),
-    /// In the object's texture.
-    Places(Vec<[f32; 2]>),
-}
-
-fn point_values(object: &Object, set: &PointSet) -> Result<PointValues, PlanError> {
-    if object.material.kind != MaterialKind::Diffuse {
-        return Ok(PointValues::None);
-    }
-    let (name, file) = (&object.name, || object.points.display().to_string());
-    Ok(match (&object.material.albedo, &set.colors) {
-        (Albedo::Color(_), _) | (Albedo::Default, None) => PointValues::None,
-        (Albedo::Default | Albedo::Points, Some(own)) => {
-            PointValues::Colors(colors::own_colors(own))
-        }
-        (Albedo::Points, None) => {
-            return Err(PlanError::NoColors { name: name.clone(), file: file() });
-        }
-        (Albedo::Attribute { name, color_map, range }, _) => {
-            PointValues::Colors(colors::attribute_colors(object, set, (name, *color_map, *range))?)
-        }
-        (Albedo::Texture { axis, .. }, _) => match (axis, colors::places(set)) {
-            (None | Some(TextureAxis::Uv), Some(places)) => PointValues::Places(places),
-            (Some(TextureAxis::Uv), None) => {
-                return Err(PlanError::NoPlaces { name: name.clone(), file: file() });
-            }
-            _ => PointValues::None,
-        },
-    })
-}
-
-fn add_image(
-    list: &mut ImageList,
-    image: Option<&Arc<film::Image>>,
-    file: &scene::ImageFile,
-    used: Use,
-) -> Result<u32, PlanError> {
-    let Some(image) = image else { unreachable!("the image '{}' is not given", file.as_written) };
-    list.add(image, &file.as_written, used)
-        .ok_or_else(|| PlanError::TooManyTexels(file.as_written.clone()))
 }
 
 fn local_light(light: &Light, origin: [f64; 3]) -> layout::Light {

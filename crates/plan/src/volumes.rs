@@ -1,8 +1,8 @@
 //! Volumes: which points carry a surface, and the grid in which a sample finds the points in its reach
-//! (\[T\] §6; docs/method.md, section 8).
+//! (\[T\] §6; docs/method.md, section 7).
 
 use crate::PlanError;
-use crate::colors::mapped;
+use crate::colors::{attribute_values, mapped};
 use kernels::layout::{
     GridInfo, Point, VOLUME_AVERAGE, VOLUME_EMISSION, VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH,
     VOLUME_SUM, VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
@@ -67,22 +67,14 @@ pub(crate) fn surface_points(
     })
 }
 
-/// The values of an attribute, or of a coordinate.
+/// The values of an attribute that a volume asks for.
 fn attribute(object: &Object, set: &PointSet, name: &str) -> Result<Vec<f64>, PlanError> {
-    let axis = ["x", "y", "z"].iter().position(|axis| *axis == name);
-    match (set.attribute(name), axis) {
-        (Some(values), _) => Ok(values.iter().collect()),
-        (None, Some(axis)) => Ok(set.positions.iter().map(|p| p[axis]).collect()),
-        (None, None) => {
-            let known = set.attributes.iter().map(|attribute| attribute.name.as_str());
-            Err(PlanError::NoVolumeAttribute {
-                name: object.name.clone(),
-                attribute: name.to_owned(),
-                file: object.points.display().to_string(),
-                known: known.chain(["x", "y", "z"]).collect::<Vec<_>>().join(", "),
-            })
-        }
-    }
+    attribute_values(set, name).map_err(|known| PlanError::NoVolumeAttribute {
+        name: object.name.clone(),
+        attribute: name.to_owned(),
+        file: object.points.display().to_string(),
+        known,
+    })
 }
 
 /// Vectors from each point to its nearest others, in the order of the set.

@@ -85,7 +85,8 @@ impl Cloud {
     /// # Errors
     /// Too many points, none, or points farther apart than f32 bears.
     pub fn new(objects: &[ObjectPoints<'_>]) -> Result<Self, CloudError> {
-        let bounds = world_bounds(objects).ok_or(CloudError::Empty)?;
+        let all = objects.iter().flat_map(|object| object.positions);
+        let bounds = bounds_of(all).ok_or(CloudError::Empty)?;
         Self::within(bounds, objects)
     }
 
@@ -160,8 +161,10 @@ fn middle(low: f64, high: f64) -> f64 {
     0.5 * low + 0.5 * high
 }
 
-fn world_bounds(objects: &[ObjectPoints<'_>]) -> Option<[[f64; 3]; 2]> {
-    let mut all = objects.iter().flat_map(|object| object.positions);
+/// Lowest and highest coordinate along each axis; `None` without points.
+#[must_use]
+pub fn bounds_of<'a>(points: impl IntoIterator<Item = &'a [f64; 3]>) -> Option<[[f64; 3]; 2]> {
+    let mut all = points.into_iter();
     let &first = all.next()?;
     Some(all.fold([first, first], |[low, high], p| {
         [

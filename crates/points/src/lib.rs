@@ -17,7 +17,7 @@ mod set;
 mod summary;
 mod watch;
 
-pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange};
+pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange, bounds_of};
 pub use grid::{BALL_MARGIN, plan_grid};
 pub use neighbors::NeighborSearch;
 pub use read::{PointsError, read};

@@ -3,11 +3,11 @@
 //! The checker, the defaults of the public types, the JSON Schema and the tables of docs/scene.md
 //! all come from [`SCENE`]. What is known here but not built is listed in `not_built.rs`.
 
-use crate::check::{
+use crate::read::Reader;
+use crate::whole::{
     background_is_one, camera_has_a_view, direction_has_a_length, material_has_one_color,
     stops_ascend, volume_says_it_once,
 };
-use crate::read::Reader;
 
 /// A key's name and what is wrong with its value.
 pub(crate) type Fault = (&'static str, String);

@@ -20,6 +20,7 @@ mod schema;
 mod settings;
 mod transfer_file;
 mod transform;
+mod whole;
 
 #[cfg(test)]
 mod reference_page;

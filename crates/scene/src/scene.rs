@@ -191,7 +191,7 @@ pub struct Object {
     pub volume: Option<Volume>,
 }
 
-/// A volume made of an object's points (docs/method.md, section 8). Lengths are scene units.
+/// A volume made of an object's points (docs/method.md, section 7). Lengths are scene units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Volume {
     /// The points' attribute that is shown.

@@ -1,0 +1,120 @@
+//! What can be wrong with a scene once its points are known.
+
+use crate::Window;
+use points::CloudError;
+
+/// What is wrong with a scene once its points are known.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// The points cannot be rendered together.
+    #[error(transparent)]
+    Points(#[from] CloudError),
+    /// A material asks for colours that the file lacks.
+    #[error(
+        "object '{name}': material.albedo is \"points\" but {file} has no colours; give a colour \
+         such as [0.8, 0.8, 0.8] or leave albedo out"
+    )]
+    NoColors {
+        /// The object.
+        name: String,
+        /// Its point file.
+        file: String,
+    },
+    /// A volume asks for an attribute that the file lacks.
+    #[error(
+        "object '{name}': its volume asks for the attribute '{attribute}' but {file} has none of that name; \
+         it has {known}"
+    )]
+    NoVolumeAttribute {
+        /// The object.
+        name: String,
+        /// What was asked for.
+        attribute: String,
+        /// Its point file.
+        file: String,
+        /// Names that would do.
+        known: String,
+    },
+    /// A step so short that rays would never end.
+    #[error(
+        "a step of {step:e} scene units is too short: a ray through the scene's volumes would take up to \
+         {samples:.1e} samples, and 1.6e7 is the limit; lengthen objects.volume.step"
+    )]
+    TooManySamples {
+        /// The shortest step of a volume.
+        step: f32,
+        /// Along the longest ray.
+        samples: f64,
+    },
+    /// A volume that has to be the only one, among others.
+    #[error(
+        "object '{name}': its volume's mode is not \"emission\", for which it has to be the scene's only volume, \
+         but there are {count}; render them one by one, or leave mode out"
+    )]
+    SeveralVolumes {
+        /// The object.
+        name: String,
+        /// Volumes of the scene.
+        count: usize,
+    },
+    /// A material asks for an attribute that the file lacks.
+    #[error(
+        "object '{name}': material.albedo is \"attribute:{attribute}\" but {file} has no such attribute; it \
+         has {known}"
+    )]
+    NoAttribute {
+        /// The object.
+        name: String,
+        /// What was asked for.
+        attribute: String,
+        /// Its point file.
+        file: String,
+        /// Names that would do.
+        known: String,
+    },
+    /// An attribute without one finite value.
+    #[error(
+        "object '{name}': material.albedo is \"attribute:{attribute}\" but none of its values in {file} is \
+         finite; take another attribute or give value_range"
+    )]
+    NoValues {
+        /// The object.
+        name: String,
+        /// What was asked for.
+        attribute: String,
+        /// Its point file.
+        file: String,
+    },
+    /// A texture by u and v for points that have none.
+    #[error(
+        "object '{name}': material.texture_axis is \"uv\" but {file} has no attributes u and v (nor s and t, \
+         texture_u and texture_v); project the texture along \"x\", \"y\" or \"z\""
+    )]
+    NoPlaces {
+        /// The object.
+        name: String,
+        /// Its point file.
+        file: String,
+    },
+    /// More texels than 32 bits can count.
+    #[error("the images of the scene, with {0}, are over 4294967295 numbers; make them smaller")]
+    TooManyTexels(String),
+    /// A crop that is not inside the picture.
+    #[error(
+        "--crop {x},{y},{width},{height} does not lie inside the picture of {image_width}x{image_height} \
+         pixels; give X,Y,W,H with W and H at least 1",
+        x = .crop.origin[0], y = .crop.origin[1], width = .crop.size[0], height = .crop.size[1],
+        image_width = .image[0], image_height = .image[1]
+    )]
+    Crop {
+        /// What was asked for.
+        crop: Window,
+        /// Columns and rows of the picture.
+        image: [u32; 2],
+    },
+    /// More colours than 32 bits of offset can count.
+    #[error(
+        "the scene has {0} coloured points but at most 1000000000 are supported; thin the point sets"
+    )]
+    TooManyColors(usize),
+}

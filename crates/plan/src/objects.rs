@@ -1,0 +1,199 @@
+//! What kernels take of each object: parameters of its fit, its material, what its points carry.
+
+use crate::images::{ImageList, Use};
+use crate::{PlanError, SceneImages, colors};
+use kernels::layout::{
+    FIT_FULL, FIT_INCOMPLETE, FitParams, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR, NONE,
+    ObjectInfo,
+};
+use points::{Cloud, PointSet};
+use scene::{
+    Albedo, FeatureSize, Material, MaterialKind, Normals, Object, Polynomial, Refine, Scene,
+    TextureAxis,
+};
+use std::sync::Arc;
+
+/// Albedo of objects whose points have no colours and whose material names none.
+const DEFAULT_ALBEDO: [f32; 3] = [0.8; 3];
+fn kind_of(polynomial: Polynomial) -> u32 {
+    match polynomial {
+        Polynomial::Full => FIT_FULL,
+        Polynomial::Incomplete => FIT_INCOMPLETE,
+    }
+}
+
+/// Distance from the centroid of k neighbours at which the surface ends, over their reach: half a spacing
+/// beyond a straight rim. The spacing is less of the reach where there are more.
+fn rim_limit(neighbors: u32) -> f32 {
+    (0.37 + 0.4 / f64::from(neighbors).sqrt()) as f32
+}
+
+pub(crate) fn fit_params(object: &Object, index: u32, cloud: &Cloud) -> FitParams {
+    let slots = cloud.objects[index as usize];
+    let neighbors = object.surface.neighbors.min(slots.count.saturating_sub(1)).max(1);
+    FitParams {
+        first_slot: slots.first_slot,
+        point_count: slots.count,
+        neighbors,
+        polynomial: kind_of(object.surface.polynomial),
+        feature_size: match object.surface.feature_size {
+            FeatureSize::Adaptive => 0.0,
+            FeatureSize::Smoothed => -1.0,
+            FeatureSize::Constant(h) => h as f32,
+        },
+        trust: object.surface.trust as f32,
+        object: index,
+        first_listed: slots.first_slot,
+        weight_scale: (1.0 / object.surface.weight_width) as f32,
+        close_gaps: u32::from(object.surface.close_gaps),
+        rim_limit: if object.surface.boundary_clip { rim_limit(neighbors) } else { 0.0 },
+    }
+}
+
+pub(crate) fn object_infos(
+    scene: &Scene,
+    sets: &[Arc<PointSet>],
+    cloud: &Cloud,
+    images: &SceneImages,
+    list: &mut ImageList,
+) -> Result<(Vec<ObjectInfo>, Vec<f32>), PlanError> {
+    let mut colors: Vec<f32> = Vec::new();
+    let mut infos = Vec::new();
+    for (index, (object, set)) in scene.objects.iter().zip(sets).enumerate() {
+        let values = point_values(object, set)?;
+        let (mut texture, mut rows) = (NONE, [[0.0; 4]; 2]);
+        if let (MaterialKind::Diffuse, Albedo::Texture { file, axis }) =
+            (object.material.kind, &object.material.albedo)
+        {
+            let image = images.textures.get(index).and_then(Option::as_ref);
+            texture = add_image(list, image, file, Use::Texture)?;
+            let axis = axis.unwrap_or(TextureAxis::Y);
+            rows = colors::projection(axis, set, &object.transform, cloud.origin);
+        }
+        let optics = Optics::of(&object.material);
+        infos.push(ObjectInfo {
+            albedo: optics.albedo,
+            first_color: match values {
+                PointValues::None => NONE,
+                _ => colors.len() as u32,
+            },
+            first_slot: cloud.objects[index].first_slot,
+            polynomial: kind_of(object.surface.polynomial),
+            max_iterations: match object.surface.refine {
+                Refine::None => 0,
+                Refine::Project { max_iterations, .. } => max_iterations,
+            },
+            tolerance: match object.surface.refine {
+                Refine::None => 0.0,
+                Refine::Project { tolerance, .. } => tolerance as f32,
+            },
+            slot_count: cloud.objects[index].count,
+            weight_scale: (1.0 / object.surface.weight_width) as f32,
+            blends: u32::from(object.surface.normals == Normals::Blended),
+            material: optics.material,
+            ior: optics.ior,
+            priority: optics.priority,
+            absorption: optics.absorption,
+            texture,
+            texture_u: rows[0],
+            texture_v: rows[1],
+        });
+        match values {
+            PointValues::None => {}
+            PointValues::Colors(values) => {
+                colors.extend(cloud.by_slot(index, &values).iter().flatten());
+            }
+            PointValues::Places(values) => {
+                colors.extend(cloud.by_slot(index, &values).iter().flatten());
+            }
+        }
+        if colors.len() > 3_000_000_000 {
+            return Err(PlanError::TooManyColors(colors.len() / 3));
+        }
+    }
+    Ok((infos, colors))
+}
+
+/// What kernels take of a material.
+struct Optics {
+    albedo: [f32; 3],
+    material: u32,
+    ior: [f32; 3],
+    priority: i32,
+    absorption: [f32; 3],
+}
+
+impl Optics {
+    fn of(material: &Material) -> Self {
+        let f32s = |v: [f64; 3]| v.map(|x| x as f32);
+        let albedo = match material.albedo {
+            Albedo::Color(color) => f32s(color),
+            _ => DEFAULT_ALBEDO,
+        };
+        let diffuse = Self {
+            albedo,
+            material: MATERIAL_DIFFUSE,
+            ior: [1.0; 3],
+            priority: 0,
+            absorption: [0.0; 3],
+        };
+        match material.kind {
+            MaterialKind::Diffuse => diffuse,
+            MaterialKind::Mirror { reflectance } => {
+                Self { albedo: f32s(reflectance), material: MATERIAL_MIRROR, ..diffuse }
+            }
+            MaterialKind::Glass { ior, priority, absorption } => Self {
+                material: MATERIAL_GLASS,
+                ior: f32s(ior),
+                priority,
+                absorption: f32s(absorption),
+                ..diffuse
+            },
+        }
+    }
+}
+
+/// What the points of an object have that its albedo takes.
+enum PointValues {
+    None,
+    Colors(Vec<[f32; 3]>),
+    /// In the object's texture.
+    Places(Vec<[f32; 2]>),
+}
+
+fn point_values(object: &Object, set: &PointSet) -> Result<PointValues, PlanError> {
+    if object.material.kind != MaterialKind::Diffuse {
+        return Ok(PointValues::None);
+    }
+    let (name, file) = (&object.name, || object.points.display().to_string());
+    Ok(match (&object.material.albedo, &set.colors) {
+        (Albedo::Color(_), _) | (Albedo::Default, None) => PointValues::None,
+        (Albedo::Default | Albedo::Points, Some(own)) => {
+            PointValues::Colors(colors::own_colors(own))
+        }
+        (Albedo::Points, None) => {
+            return Err(PlanError::NoColors { name: name.clone(), file: file() });
+        }
+        (Albedo::Attribute { name, color_map, range }, _) => {
+            PointValues::Colors(colors::attribute_colors(object, set, (name, *color_map, *range))?)
+        }
+        (Albedo::Texture { axis, .. }, _) => match (axis, colors::places(set)) {
+            (None | Some(TextureAxis::Uv), Some(places)) => PointValues::Places(places),
+            (Some(TextureAxis::Uv), None) => {
+                return Err(PlanError::NoPlaces { name: name.clone(), file: file() });
+            }
+            _ => PointValues::None,
+        },
+    })
+}
+
+pub(crate) fn add_image(
+    list: &mut ImageList,
+    image: Option<&Arc<film::Image>>,
+    file: &scene::ImageFile,
+    used: Use,
+) -> Result<u32, PlanError> {
+    let Some(image) = image else { unreachable!("the image '{}' is not given", file.as_written) };
+    list.add(image, &file.as_written, used)
+        .ok_or_else(|| PlanError::TooManyTexels(file.as_written.clone()))
+}

@@ -1,0 +1,229 @@
+//! What no key of a table can say alone: checks that need several.
+
+use crate::document::{Origin, Value};
+use crate::keys::{Fault, SHORT, plain};
+use crate::read::Reader;
+
+/// The sine of the smallest angle between `up` and the line of sight.
+const MIN_SINE: f64 = 1e-6;
+
+/// A camera looks along a line, and `up` is not along it.
+pub(crate) fn camera_has_a_view(camera: &Reader<'_>) -> Result<(), Fault> {
+    let [eye, target, up] = ["eye", "target", "up"].map(|name| camera.vector(name));
+    let view = [target[0] - eye[0], target[1] - eye[1], target[2] - eye[2]];
+    let distance = length(view);
+    if distance < SHORT {
+        let message = format!(
+            "found {} scene units from camera.eye, expected at least {}; move it apart",
+            plain(distance),
+            plain(SHORT)
+        );
+        return Err(("target", message));
+    }
+    long_enough("up", up)?;
+    let (v, u) = (view.map(|x| x / distance), up.map(|x| x / length(up)));
+    let cross = [v[1] * u[2] - v[2] * u[1], v[2] * u[0] - v[0] * u[2], v[0] * u[1] - v[1] * u[0]];
+    if length(cross) < MIN_SINE {
+        let message = "found a direction parallel to the line of sight from camera.eye to \
+                       camera.target, expected one across it; turn it";
+        return Err(("up", message.into()));
+    }
+    projection_has_its_keys(camera)?;
+    lens_is_no_wider_than_rays_can_bear(camera, distance)
+}
+
+/// Each projection has one key that says how much it shows.
+fn projection_has_its_keys(camera: &Reader<'_>) -> Result<(), Fault> {
+    let projection = camera.text("projection");
+    let foreign = if projection == "orthographic" { "vertical_fov" } else { "height" };
+    if camera.written(foreign).is_some() {
+        let owner = if foreign == "height" { "orthographic" } else { "perspective" };
+        let message = format!(
+            "belongs to projection \"{owner}\", but projection is \"{projection}\"; remove one"
+        );
+        return Err((foreign, message));
+    }
+    if projection == "orthographic" && camera.written("height").is_none() {
+        let message = "missing, expected the height of what an orthographic picture shows; add e.g. \
+                       height = 2.0";
+        return Err(("height", message.into()));
+    }
+    Ok(())
+}
+
+/// Widest lens over the distance in focus.
+const MAX_APERTURE: f64 = 1000.0;
+
+/// Rays from its rim still go forward.
+fn lens_is_no_wider_than_rays_can_bear(camera: &Reader<'_>, target: f64) -> Result<(), Fault> {
+    let aperture = camera.number("aperture");
+    let focus = camera.written("focus").map_or(target, |_| camera.number("focus"));
+    if aperture > MAX_APERTURE * focus {
+        let message = format!(
+            "found {} scene units with a focus at {}, expected at most {MAX_APERTURE} times as much; \
+             lower it",
+            plain(aperture),
+            plain(focus)
+        );
+        return Err(("aperture", message));
+    }
+    Ok(())
+}
+
+/// The direction of a directional light is long enough to be normalised.
+pub(crate) fn direction_has_a_length(light: &Reader<'_>) -> Result<(), Fault> {
+    match light.text("kind").as_str() {
+        "directional" => long_enough("direction", light.vector("direction")),
+        _ => Ok(()),
+    }
+}
+
+/// An Abbe number goes with one index, not with one a channel.
+fn dispersion_is_stated_once(material: &Reader<'_>) -> Result<(), Fault> {
+    let several = material.written("ior").is_some_and(|ior| matches!(ior.value, Value::List(_)));
+    if material.written("abbe").is_some() && several {
+        let message = "found beside an ior of three numbers, expected one number there; remove \
+                       this or give one ior";
+        return Err(("abbe", message.into()));
+    }
+    Ok(())
+}
+
+/// The background is a colour or an image. The colour that a point file rendered directly gets gives way.
+pub(crate) fn background_is_one(background: &Reader<'_>) -> Result<(), Fault> {
+    let color = background.written("color").filter(|node| node.origin != Origin::Given);
+    match (color, background.written("environment")) {
+        (Some(_), Some(_)) => Err((
+            "environment",
+            "found both color and environment, expected one of them; remove one".into(),
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// What a volume shows is stated once, and each kernel and mode has its keys.
+pub(crate) fn volume_says_it_once(volume: &Reader<'_>) -> Result<(), Fault> {
+    let has = |name: &str| volume.written(name).is_some();
+    match (has("transfer"), has("color_map")) {
+        (true, true) => {
+            let message = "found both transfer and color_map, expected one of them; remove one";
+            return Err(("color_map", message.into()));
+        }
+        (false, false) => {
+            let message = "missing, and so is color_map, expected one of them; add e.g. color_map = \
+                           \"viridis\" and extinction = [0.0, 5.0]";
+            return Err(("transfer", message.into()));
+        }
+        (false, true) if !has("extinction") => {
+            let message = "missing, expected the extinction of what color_map shows; add e.g. extinction = \
+                           [0.0, 5.0]";
+            return Err(("extinction", message.into()));
+        }
+        _ => {}
+    }
+    let owned = [
+        ("value_range", has("color_map"), "color_map, but there is none"),
+        ("extinction", has("color_map"), "color_map, but there is none"),
+        (
+            "smoothing_length",
+            volume.text("kernel") == "sph",
+            "kernel \"sph\", but kernel is another",
+        ),
+        ("mass", volume.text("kernel") == "sph", "kernel \"sph\", but kernel is another"),
+        ("density", has("mass"), "mass, but there is none"),
+        ("radius", volume.text("kernel") != "sph", "other kernels than \"sph\""),
+        ("smoothing", volume.text("kernel") != "sph", "other kernels than \"sph\""),
+        ("iso", volume.text("mode") == "isosurface", "mode \"isosurface\", but mode is another"),
+    ];
+    for (name, fits, owner) in owned {
+        if has(name) && !fits {
+            return Err((name, format!("belongs to {owner}; remove one")));
+        }
+    }
+    let required = [
+        ("smoothing_length", volume.text("kernel") == "sph", "kernel \"sph\"", "\"h\""),
+        ("iso", volume.text("mode") == "isosurface", "mode \"isosurface\"", "0.5"),
+    ];
+    for (name, needed, owner, example) in required {
+        if needed && !has(name) {
+            return Err((
+                name,
+                format!("missing, expected for {owner}; add e.g. {name} = {example}"),
+            ));
+        }
+    }
+    stops_ascend(volume)
+}
+
+/// A transfer function's stops ascend in value.
+pub(crate) fn stops_ascend(volume: &Reader<'_>) -> Result<(), Fault> {
+    let values: Vec<f64> = (volume.tables("transfer", &crate::keys::TRANSFER).iter())
+        .map(|stop| stop.number("value"))
+        .collect();
+    match values.windows(2).find(|pair| pair[0] > pair[1]) {
+        Some(pair) => Err((
+            "transfer",
+            format!(
+                "found the value {} behind {}, expected stops that ascend; sort them",
+                plain(pair[1]),
+                plain(pair[0])
+            ),
+        )),
+        None => Ok(()),
+    }
+}
+
+/// A material has an albedo or a texture, and what belongs to one of them only with that.
+pub(crate) fn material_has_one_color(material: &Reader<'_>) -> Result<(), Fault> {
+    let has = |name: &str| material.written(name).is_some();
+    if has("albedo") && has("texture") && material.text("kind") == "diffuse" {
+        let message = "found both albedo and texture, expected one of them; remove one";
+        return Err(("texture", message.into()));
+    }
+    if has("texture_axis") && !has("texture") {
+        let message = "belongs to a texture, but there is none; add texture, or remove it";
+        return Err(("texture_axis", message.into()));
+    }
+    let albedo = material.written("albedo").map(|node| &node.value);
+    let of_attribute = matches!(albedo, Some(Value::Text(text)) if text != "points");
+    for name in ["color_map", "value_range"] {
+        if has(name) && !of_attribute {
+            let message = "belongs to the albedo of an attribute, but there is none; write albedo = \
+                           \"attribute:NAME\", or remove it";
+            return Err((name, message.into()));
+        }
+    }
+    dispersion_is_stated_once(material)
+}
+
+fn long_enough(name: &'static str, v: [f64; 3]) -> Result<(), Fault> {
+    let length = length(v);
+    if length >= SHORT {
+        return Ok(());
+    }
+    let [found, shortest] = [length, SHORT].map(plain);
+    Err((name, format!("found a length of {found}, expected at least {shortest}; lengthen it")))
+}
+
+/// Scaled by the largest component, so that squares neither overflow nor vanish.
+fn length(v: [f64; 3]) -> f64 {
+    let largest = v.iter().fold(0.0_f64, |max, x| max.max(x.abs()));
+    if largest == 0.0 {
+        return 0.0;
+    }
+    largest * v.iter().map(|x| (x / largest) * (x / largest)).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::length;
+
+    #[test]
+    fn length_neither_overflows_nor_vanishes() {
+        for (v, expected) in [([3e200, 0.0, -4e200], 5e200), ([0.0, 3e-200, 4e-200], 5e-200)] {
+            // A division, a root and a product round once each.
+            assert!((length(v) / expected - 1.0).abs() < 1e-15, "{v:?}");
+        }
+        assert_eq!(length([0.0, -0.0, 0.0]), 0.0);
+    }
+}
