@@ -15,7 +15,7 @@
 // paper's loop. Any K gives the same bits: a pass can end after any cell, and, so that no dispatch
 // runs away, after any 32 points of one; cell and cursor say where to go on.
 // With LEAVES, rays start on surfaces, whose own sheet they do not meet again at once, and may end at
-// any hit: those towards lights.
+// any hit: those towards lights. Light for the points of a volume passes the surface of its own object.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
@@ -87,6 +87,9 @@ void main() {
             float from = 0.0;
 #endif
             float t = intersect(o, d, p, from);
+#ifdef LEAVES
+            t = p.object == params.passed ? NO_HIT : t;
+#endif
             bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);
             bool nearer = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);
             bool better = nearer && t > ray.after;

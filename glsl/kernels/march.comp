@@ -9,7 +9,11 @@
 // runs    one invocation per ray of the wave; dispatched until none lives
 // twin    crates/reference/src/volume.rs
 //
-// With SHADOWS, rays towards a light: what is left of its light goes to light_sums.
+// With SHADOWS, rays towards a light: what is left of its light goes to light_sums. With LIT, colours of
+// some volumes are not emitted, but scatter the light that reaches their points:
+// reads   lights
+//         visible          of each point, how much of each light's reaches it
+// writes  march_lights     beside march
 //
 // Samples lie at the midpoints of steps that are counted from where the ray enters the first volume, or
 // from its start where it is inside the surface of one; the last step ends where the ray does, and counts
@@ -22,6 +26,9 @@
 #include "volume.glsl"
 #include "state.glsl"
 #include "index.glsl"
+#ifdef LIT
+#include "light.glsl"
+#endif
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
@@ -32,6 +39,11 @@ layout(std430, binding = WAVE_LIT_RAYS) readonly buffer LitRays { uvec2 lit_rays
 layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
 #else
 layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
+#endif
+#ifdef LIT
+layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
+layout(std430, binding = MARCH_LIGHT) buffer MarchLights { MarchLight march_lights[]; };
+layout(std430, binding = MARCH_VISIBLE) readonly buffer Visible { vec4 visible[]; };
 #endif
 layout(push_constant) uniform Push { MarchParams params; };
 
@@ -49,7 +61,7 @@ bool is_inside(uint path, uint object) {
 
 // Whether a volume counts on this ray at all.
 bool takes_part(VolumeInfo volume, uint path) {
-    return volume.bounded == 0u || is_inside(path, volume.object);
+    return volume.mode != VOLUME_ISOSURFACE && (volume.bounded == 0u || is_inside(path, volume.object));
 }
 
 // From where to where the ray passes volumes.
@@ -98,6 +110,30 @@ March shown(VolumeInfo volume, March march) {
     return march;
 }
 
+#ifdef LIT
+#define INVERSE_PI 0.318309886
+#define INVERSE_FOUR_PI 0.0795774715
+#define FLATTEST 1e-6 // a gradient, by its terms
+
+// What of the light at x goes towards the viewer, by the colour there. By Lambert's law for a surface across
+// the gradient, or evenly to all sides, as is the mean of that over all surfaces.
+vec3 scattered(VolumeInfo volume, float scalar, float weights, MarchLight sums, vec3 x, vec3 d) {
+    vec3 gradient = gradient_of(volume, scalar, sums.pull, sums.weights_pull);
+    float square = dot3(gradient, gradient);
+    float terms = dot3(sums.pull, sums.pull) + (scalar * scalar) * dot3(sums.weights_pull, sums.weights_pull);
+    bool steep = volume.shading == VOLUME_GRADIENT && square > (FLATTEST * FLATTEST) * terms;
+    vec3 normal = steep ? gradient / (steep ? sqrt(square) : 1.0) : vec3(0.0);
+    normal = dot3(normal, d) > 0.0 ? -normal : normal;
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < params.light_count; ++i) {
+        LightSample light = sample_light(lights[i], x, vec2(0.5));
+        float share = steep ? max(dot3(normal, light.towards), 0.0) * INVERSE_PI : INVERSE_FOUR_PI;
+        sum += ((sums.visible[i] / weights) * share) * light.arriving;
+    }
+    return sum;
+}
+#endif
+
 void finish(uint at, uint path, March march) {
 #ifdef SHADOWS
     light_sums[at].arriving *= march.transmittance;
@@ -125,6 +161,9 @@ void main() {
     float end = ray.hit_slot != NONE ? hits[at].t : NO_HIT;
 #endif
     if (march.state == 2u || !begins) return;
+#ifdef LIT
+    MarchLight sums = march_lights[at];
+#endif
     if (march.state == 0u) {
         march.transmittance = 1.0;
         march.state = 1u;
@@ -166,14 +205,25 @@ void main() {
                     square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
                 march.numerator += weight * point.scalar;
                 march.denominator += weight;
+#ifdef LIT
+                sums.pull += (weight * point.scalar) * y;
+                sums.weights_pull += weight * y;
+                sums.visible += weight * visible[first + i];
+#endif
             }
             uint splines = particles ? count : 0u;
             for (uint i = 0u; i < splines; ++i) {
                 VolumePoint point = volume_points[first + i];
                 vec3 y = point.position - x;
-                float weight = spline(sqrt(dot3(y, y)) * inverse_lengths[first + i]);
+                float inverse_length = inverse_lengths[first + i];
+                float q = sqrt(dot3(y, y)) * inverse_length;
+                float weight = spline(q);
                 march.numerator += weight * point.scalar;
                 march.denominator += weight;
+#ifdef LIT
+                sums.pull += (spline_pull(q, inverse_length) * point.scalar) * y;
+                sums.visible += weight * visible[first + i];
+#endif
             }
             bool row_ends = first + count >= range.y;
             march.cursor = row_ends ? 0u : march.cursor + count;
@@ -197,7 +247,15 @@ void main() {
             march.color.xy = reached && !emission ? whole : march.color.xy;
             vec4 seen = transfer(volume, scalar);
             float extinction = reached && emission ? seen.w : 0.0;
-            march.sample_color += extinction * seen.xyz;
+            vec3 color = seen.xyz;
+#ifdef LIT
+            uint lit = extinction > 0.0 && volume.shading != VOLUME_EMITS ? 1u : 0u;
+            for (uint i = 0u; i < lit; ++i) {
+                color *= scattered(volume, scalar, march.denominator, sums, at_place.x, ray.direction);
+            }
+            sums = MarchLight(vec3(0.0), 0u, vec3(0.0), 0u, vec4(0.0));
+#endif
+            march.sample_color += extinction * color;
             march.sample_extinction += extinction;
             march.numerator = 0.0;
             march.denominator = 0.0;
@@ -206,8 +264,8 @@ void main() {
             bool last = march.volume >= params.volume_count;
             bool emits = last && march.sample_extinction > 0.0;
             float through = exp_negative(-(march.sample_extinction * at_place.length_of_step));
-            vec3 color = march.sample_color / (emits ? march.sample_extinction : 1.0);
-            march.color += emits ? (march.transmittance * (1.0 - through)) * color : vec3(0.0);
+            vec3 mean = march.sample_color / (emits ? march.sample_extinction : 1.0);
+            march.color += emits ? (march.transmittance * (1.0 - through)) * mean : vec3(0.0);
             march.transmittance *= emits ? through : 1.0;
             march.sample_color = last ? vec3(0.0) : march.sample_color;
             march.sample_extinction = last ? 0.0 : march.sample_extinction;
@@ -225,6 +283,11 @@ void main() {
     bool done = march.place >= samples;
     march.state = done ? 2u : 1u;
     marches[at] = march;
-    if (done) finish(at, path, volumes[0].mode == VOLUME_EMISSION ? march : shown(volumes[0], march));
+#ifdef LIT
+    march_lights[at] = sums;
+#endif
+    uint mode = volumes[0].mode;
+    bool whole = mode == VOLUME_MAXIMUM || mode == VOLUME_AVERAGE;
+    if (done) finish(at, path, whole ? shown(volumes[0], march) : march);
     else atomicAdd(live, 1u);
 }

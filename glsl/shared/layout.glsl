@@ -106,6 +106,19 @@
 #define VOLUME_EMISSION 0
 #define VOLUME_MAXIMUM 1
 #define VOLUME_AVERAGE 2
+#define VOLUME_ISOSURFACE 3 // a surface where the scalar is one number; nothing along the way
+
+// What the light of the scene does in a volume.
+#define VOLUME_EMITS 0    // nothing: colours are emitted
+#define VOLUME_GRADIENT 1 // Lambert's law, with the scalar's gradient for a normal
+#define VOLUME_SCATTERS 2 // it is scattered evenly to all sides
+#define VOLUME_LIGHTS 4   // lights that a scene with such volumes may have
+
+// What may be seen from a volume's cell.
+#define CELL_NOTHING 0
+#define CELL_LOOK 1  // look
+#define CELL_ABOVE 2 // of an isosurface: the scalar is above it wherever there is one
+#define CELL_BELOW 3
 
 #define MOST_CROSSINGS 1024 // surfaces a path may pass through that do not change its medium
 #define CHANNELS_ALL 7 // a path's channels: 1 red, 2 green, 4 blue
@@ -120,6 +133,9 @@
 #define MARCH_LENGTHS 38
 #define LIVE_OFFSETS 39
 #define LIVE_RAYS 40
+#define ISO_SEARCHES 41
+#define MARCH_LIGHT 42 // MarchLight by ray
+#define MARCH_VISIBLE 43
 #define SHADE_IMAGES 30
 #define SHADE_TEXELS 31
 
@@ -255,12 +271,13 @@ struct CameraParams {    // 96 bytes
     uint seed;           // 92
 };
 
-struct TraceParams {     // 20 bytes
+struct TraceParams {     // 24 bytes
     uint ray_count;      //  0  of the wave, or of those that are listed
     uint cells;          //  4  K: how many cells a ray may cross in this pass
     uint work;           //  8  loop iterations a ray may spend in this pass
     uint any_hit;        // 12  1: any hit ends a ray
     uint listed;         // 16  1: rays are those of a list, and their state stays where it is
+    uint passed;         // 20  object whose surface is not there, or NONE
 };
 
 // Distances between nearest and farthest, ranked by their bits.
@@ -362,7 +379,7 @@ struct Path {            // 80 bytes
 };
 
 // A field between points (section 6 of the paper).
-struct VolumeInfo {      // 80 bytes
+struct VolumeInfo {      // 96 bytes
     GridInfo grid;       //  0  over the points' bounding box grown by the radius, and up to a cell more
     uint first_cell;     // 32  in the cells of all volumes
     uint first_stop;     // 36  in the stops of all volumes
@@ -373,12 +390,16 @@ struct VolumeInfo {      // 80 bytes
     uint object;         // 56
     uint bounded;        // 60  1: it counts inside the object's surface alone
     vec3 high;           // 64  of the box, whose lowest corner is the grid's
-    uint mode;           // 76  VOLUME_EMISSION and so on; all others: the scene's only volume
+    uint mode;           // 76  VOLUME_EMISSION and so on; maximum, average: the scene's only volume
+    float iso;           // 80  scalar on an isosurface
+    uint slot;           // 84  of the polynomial that stands for an isosurface, behind those of all points
+    uint refracts;       // 88  1: an isosurface of glass, which rays are inside or outside of
+    uint shading;        // 92  VOLUME_EMITS and so on
 };
 
 struct VolumeCell {      // 8 bytes
     uint first;          //  0  point in the points of all volumes; the next cell's is the end
-    uint counts;         //  4  1: something between here may be seen
+    uint counts;         //  4  CELL_*
 };
 
 struct VolumePoint {     // 16 bytes
@@ -411,11 +432,49 @@ struct March {           // 64 bytes
     uint pad;            // 60
 };
 
-struct MarchParams {     // 16 bytes
+// What a sample of a lit volume needs beside its scalar, so far.
+struct MarchLight {      // 48 bytes
+    vec3 pull;           //  0  sum of the weights' gradients, by the scalars
+    uint pad;            // 12
+    vec3 weights_pull;   // 16  sum of the weights' gradients
+    uint pad_end;        // 28
+    vec4 visible;        // 32  of each light, by the weights
+};
+
+// How far a ray has looked for isosurfaces.
+struct IsoSearch {       // 80 bytes
+    vec3 pull;           //  0  as in MarchLight, at this place
+    float numerator;     // 12  of the scalar here
+    vec3 weights_pull;   // 16
+    float denominator;   // 28
+    float low;           // 32  along the ray: the last place on the side that it comes from
+    float high;          // 36  the first known beyond the surface
+    float value_low;     // 40  scalar less iso there; 0: not known
+    float value_high;    // 44
+    float here;          // 48  the next place between them
+    uint state;          // 52  ISO_*
+    uint place;          // 56  sample, or turn
+    uint volume;         // 60
+    uint row;            // 64  of cells around the place
+    uint cursor;         // 68  points of the row that are done
+    uint side;           // 72  of `low`: 0 not known, 1 below, 2 above
+    uint looked;         // 76  whether it was looked at, or is known from its cell
+};
+
+struct MarchParams {     // 20 bytes
     uint ray_count;      //  0
     uint volume_count;   //  4
     float step;          //  8
     uint work;           // 12  loop iterations a ray may spend in this pass
+    uint light_count;    // 16  of march_lit
+};
+
+// Of the kernels that light a volume's points.
+struct PointLightParams { // 16 bytes
+    uint first;          //  0  point in the points of all volumes
+    uint count;          //  4
+    uint light;          //  8
+    uint object;         // 12  that of the volume
 };
 
 // At a diffuse hit.

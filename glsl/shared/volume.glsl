@@ -36,6 +36,19 @@ float spline(float q) {
     return 0.25 * (far * far * far) - near * near * near;
 }
 
+// What the gradient of the cubic spline is along y = p - x, by 1 / h.
+float spline_pull(float q, float inverse_length) {
+    float far = max(2.0 - q, 0.0);
+    bool near = q < 1.0;
+    float slope = near ? 3.0 - 2.25 * q : 0.75 * (far * far) / (near ? 1.0 : q);
+    return slope * (inverse_length * inverse_length);
+}
+
+// The direction of a scalar's gradient, from the sums of the weights' gradients.
+vec3 gradient_of(VolumeInfo volume, float scalar, vec3 pull, vec3 weights_pull) {
+    return volume.kernel == VOLUME_SHEPARD ? pull - scalar * weights_pull : pull;
+}
+
 // Colour and extinction of a scalar: linear between stops, constant beyond the outer ones.
 vec4 transfer(VolumeInfo volume, float scalar) {
     uint low = volume.first_stop; // the last stop not above the scalar, or the first

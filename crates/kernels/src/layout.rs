@@ -208,6 +208,12 @@ constants! {
     LIVE_OFFSETS = 39;
     /// Binding of `list_live` and `grid_trace`: the rays that live.
     LIVE_RAYS = 40;
+    /// Binding of `isosurface`: [`IsoSearch`] by ray.
+    ISO_SEARCHES = 41;
+    /// Binding of `march_lit`: [`MarchLight`] by ray.
+    MARCH_LIGHT = 42;
+    /// Binding of `point_lights` and `march_lit`: what of each light's reaches each point of a volume.
+    MARCH_VISIBLE = 43;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
     VOLUME_SHEPARD = 0;
     /// [`VolumeInfo::kernel`] of the weighted sum.
@@ -220,6 +226,24 @@ constants! {
     VOLUME_MAXIMUM = 1;
     /// [`VolumeInfo::mode`]: the mean scalar.
     VOLUME_AVERAGE = 2;
+    /// [`VolumeInfo::mode`]: the surface where the scalar is one number.
+    VOLUME_ISOSURFACE = 3;
+    /// [`VolumeInfo::shading`]: colours are emitted.
+    VOLUME_EMITS = 0;
+    /// [`VolumeInfo::shading`]: Lambert's law, with the scalar's gradient for a normal.
+    VOLUME_GRADIENT = 1;
+    /// [`VolumeInfo::shading`]: light is scattered evenly to all sides.
+    VOLUME_SCATTERS = 2;
+    /// Lights that a scene with lit volumes may have.
+    VOLUME_LIGHTS = 4;
+    /// [`VolumeCell::counts`]: nothing can be seen from here.
+    CELL_NOTHING = 0;
+    /// [`VolumeCell::counts`]: something may be seen.
+    CELL_LOOK = 1;
+    /// [`VolumeCell::counts`]: where there is a scalar, it is above the isosurface.
+    CELL_ABOVE = 2;
+    /// [`VolumeCell::counts`]: where there is one, it is below.
+    CELL_BELOW = 3;
     /// Binding of `shade`: [`ImageInfo`]s.
     SHADE_IMAGES = 30;
     /// Binding of `shade`: a table of sRGB, and the texels of all images.
@@ -508,8 +532,12 @@ pub struct TraceParams {
     pub any_hit: u32,
     /// 1: rays are those of a list, and their state stays where it is.
     pub listed: u32,
+    /// Object whose surface is not there, or `NONE`.
+    pub passed: u32,
 }
-gpu_layout!(TraceParams, 20, { ray_count: 0, cells: 4, work: 8, any_hit: 12, listed: 16 });
+gpu_layout!(TraceParams, 24, {
+    ray_count: 0, cells: 4, work: 8, any_hit: 12, listed: 16, passed: 20,
+});
 
 /// Distances between nearest and farthest, ranked by their bits.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -745,10 +773,19 @@ pub struct VolumeInfo {
     pub high: [f32; 3],
     /// What a ray shows: one of `VOLUME_EMISSION` and so on.
     pub mode: u32,
+    /// Scalar on an isosurface.
+    pub iso: f32,
+    /// Of the polynomial that stands for an isosurface, behind those of all points.
+    pub slot: u32,
+    /// 1: an isosurface of glass, which rays are inside or outside of.
+    pub refracts: u32,
+    /// What light does in it: one of `VOLUME_EMITS` and so on.
+    pub shading: u32,
 }
-gpu_layout!(VolumeInfo, 80, {
+gpu_layout!(VolumeInfo, 96, {
     grid: 0, first_cell: 32, first_stop: 36, stop_count: 40, kernel: 44, square_radius: 48,
-    inverse_width: 52, object: 56, bounded: 60, high: 64, mode: 76,
+    inverse_width: 52, object: 56, bounded: 60, high: 64, mode: 76, iso: 80,
+    slot: 84, refracts: 88, shading: 92,
 });
 
 /// A cell of a volume's grid.
@@ -757,7 +794,7 @@ gpu_layout!(VolumeInfo, 80, {
 pub struct VolumeCell {
     /// Point in the points of all volumes; the next cell's is the end.
     pub first: u32,
-    /// 1 where something between here may be seen.
+    /// One of `CELL_*`.
     pub counts: u32,
 }
 gpu_layout!(VolumeCell, 8, { first: 0, counts: 4 });
@@ -823,6 +860,80 @@ gpu_layout!(March, 64, {
     denominator: 36, state: 40, place: 44, volume: 48, row: 52, cursor: 56, pad: 60,
 });
 
+/// What a sample of a lit volume needs beside its scalar.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct MarchLight {
+    /// Sum of the weights' gradients, by the scalars.
+    pub pull: [f32; 3],
+    /// Unused.
+    pub pad: u32,
+    /// Sum of the weights' gradients.
+    pub weights_pull: [f32; 3],
+    /// Unused.
+    pub pad_end: u32,
+    /// Of each light, by the weights.
+    pub visible: [f32; 4],
+}
+gpu_layout!(MarchLight, 48, { pull: 0, pad: 12, weights_pull: 16, pad_end: 28, visible: 32 });
+
+/// How far a ray has looked for isosurfaces.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct IsoSearch {
+    /// As in [`MarchLight`], at this place.
+    pub pull: [f32; 3],
+    /// Of the scalar here.
+    pub numerator: f32,
+    /// As in [`MarchLight`], at this place.
+    pub weights_pull: [f32; 3],
+    /// Of the scalar here.
+    pub denominator: f32,
+    /// Along the ray: the last place on the side that it comes from.
+    pub low: f32,
+    /// The first known beyond the surface.
+    pub high: f32,
+    /// Scalar less iso there; 0: not known.
+    pub value_low: f32,
+    /// The same at the other end.
+    pub value_high: f32,
+    /// The next place between them.
+    pub here: f32,
+    /// New, stepping, closing in, turning to the viewer, done.
+    pub state: u32,
+    /// Sample, or turn.
+    pub place: u32,
+    /// Volume.
+    pub volume: u32,
+    /// Of cells around the place.
+    pub row: u32,
+    /// Points of the row that are done.
+    pub cursor: u32,
+    /// Of `low`: 0 not known, 1 below, 2 above.
+    pub side: u32,
+    /// Whether it was looked at, or is known from its cell.
+    pub looked: u32,
+}
+gpu_layout!(IsoSearch, 80, {
+    pull: 0, numerator: 12, weights_pull: 16, denominator: 28, low: 32, high: 36, value_low: 40,
+    value_high: 44, here: 48, state: 52, place: 56, volume: 60, row: 64, cursor: 68, side: 72, looked: 76,
+});
+
+/// Push constants of `point_rays` and `point_lights`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct PointLightParams {
+    /// Point in the points of all volumes.
+    pub first: u32,
+    /// Points of this batch.
+    pub count: u32,
+    /// Which.
+    pub light: u32,
+    /// That of the volume.
+    pub object: u32,
+}
+gpu_layout!(PointLightParams, 16, { first: 0, count: 4, light: 8, object: 12 });
+
 /// Push constants of `march`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -835,8 +946,12 @@ pub struct MarchParams {
     pub step: f32,
     /// Loop iterations a ray may spend in this pass.
     pub work: u32,
+    /// Lights, where volumes are lit.
+    pub light_count: u32,
 }
-gpu_layout!(MarchParams, 16, { ray_count: 0, volume_count: 4, step: 8, work: 12 });
+gpu_layout!(MarchParams, 20, {
+    ray_count: 0, volume_count: 4, step: 8, work: 12, light_count: 16,
+});
 
 /// Light at a diffuse hit.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -923,6 +1038,9 @@ pub const STRUCTS: &[StructLayout] = &[
     VolumePoint::LAYOUT,
     VolumeStop::LAYOUT,
     March::LAYOUT,
+    MarchLight::LAYOUT,
+    IsoSearch::LAYOUT,
+    PointLightParams::LAYOUT,
     MarchParams::LAYOUT,
     LightSum::LAYOUT,
     FilmPixel::LAYOUT,

@@ -60,6 +60,10 @@ modules! {
     grid_trace_leaving_texels,
     /// From the camera, reading polynomials through a uniform texel buffer.
     grid_trace_texels,
+    /// Where rays first meet an isosurface.
+    isosurface,
+    /// Whether shadow rays meet one.
+    isosurface_shadows,
     /// The rays that hit a diffuse surface, one after another.
     list_lit,
     /// The rays of a wave that have not ended, one after another.
@@ -68,10 +72,16 @@ modules! {
     list_points,
     /// Rays through volumes.
     march,
+    /// Rays through volumes that lights shine into.
+    march_lit,
     /// Shadow rays through volumes.
     march_shadows,
     /// Which rays of a wave have not ended.
     mark_live,
+    /// What of a light's reaches the points of a volume.
+    point_lights,
+    /// Rays from the points of a volume towards a light.
+    point_rays,
     /// One iteration of each pending hit towards the point set surface.
     refine,
     /// The same, reading points through a uniform texel buffer.
@@ -102,6 +112,8 @@ pub const VARIANTS: &[(&str, &str, &[&str])] = &[
     ("grid_trace_leaving", "grid_trace", &["LEAVES"]),
     ("grid_trace_leaving_texels", "grid_trace", &["LEAVES", "RECORDS_AS_TEXELS"]),
     ("grid_trace_texels", "grid_trace", &["RECORDS_AS_TEXELS"]),
+    ("isosurface_shadows", "isosurface", &["SHADOWS"]),
+    ("march_lit", "march", &["LIT"]),
     ("march_shadows", "march", &["SHADOWS"]),
     ("refine_texels", "refine", &["RECORDS_AS_TEXELS"]),
 ];

@@ -57,6 +57,35 @@ pub enum PlanError {
         /// Volumes of the scene.
         count: usize,
     },
+    /// More lights than a lit volume takes.
+    #[error(
+        "object '{name}': its volume has a shading, for which a scene may have 4 lights, but there are \
+         {lights}; leave some out, or set shading = \"none\""
+    )]
+    TooManyVolumeLights {
+        /// The object.
+        name: String,
+        /// Lights of the scene.
+        lights: usize,
+    },
+    /// An isosurface of glass of a kernel whose isosurfaces have rims.
+    #[error(
+        "object '{name}': its isosurface is of glass but its kernel is \"shepard\", whose isosurfaces end where \
+         the points do, so that rays cannot tell inside from outside; set volume.kernel to \"sum\" or \"sph\""
+    )]
+    OpenIsosurface {
+        /// The object.
+        name: String,
+    },
+    /// An isosurface with an albedo of points.
+    #[error(
+        "object '{name}': an isosurface has one albedo, but material asks for a texture or for the points' own; \
+         give a colour such as [0.8, 0.8, 0.8] or leave albedo out"
+    )]
+    IsosurfaceAlbedo {
+        /// The object.
+        name: String,
+    },
     /// A material asks for an attribute that the file lacks.
     #[error(
         "object '{name}': material.albedo is \"attribute:{attribute}\" but {file} has no such attribute; it \

@@ -31,7 +31,7 @@ use kernels::layout::{
     self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, LIGHT_DIRECTIONAL,
     LIGHT_POINT, MATERIAL_DIFFUSE, MEDIA_WORDS, NONE, ObjectInfo, WaveParams,
 };
-use objects::{add_image, fit_params, object_infos};
+use objects::{add_image, color_isosurfaces, fit_params, object_infos};
 use points::{Cloud, CloudError, ObjectPoints, PointSet, bounds_of};
 pub use scene::Primary;
 use scene::{Fresnel, Light, Object, Scene, Up};
@@ -150,7 +150,7 @@ impl Plan {
             .collect();
         let bounds = bounds_of(world.iter().flatten()).ok_or(CloudError::Empty)?;
         let cloud = Cloud::within(bounds, &object_points)?;
-        let volumes = volumes::plan_volumes(scene, &sets, &world, cloud.origin)?;
+        let volumes = volumes::plan_volumes(scene, &sets, &world, &cloud)?;
         let fits = scene
             .objects
             .iter()
@@ -158,7 +158,8 @@ impl Plan {
             .map(|(object, index)| fit_params(object, index, &cloud))
             .collect();
         let mut list = ImageList::new();
-        let (objects, colors) = object_infos(scene, &surface_sets, &cloud, images, &mut list)?;
+        let (mut objects, colors) = object_infos(scene, &surface_sets, &cloud, images, &mut list)?;
+        color_isosurfaces(scene, &volumes, &mut objects);
         let environment = match &scene.background.environment {
             Some(file) => {
                 add_image(&mut list, images.environment.as_ref(), file, Use::Environment)?

@@ -1,7 +1,7 @@
 //! What kernels take of each object: parameters of its fit, its material, what its points carry.
 
 use crate::images::{ImageList, Use};
-use crate::{PlanError, SceneImages, colors};
+use crate::{PlanError, SceneImages, Volumes, colors};
 use kernels::layout::{
     FIT_FULL, FIT_INCOMPLETE, FitParams, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR, NONE,
     ObjectInfo,
@@ -9,7 +9,7 @@ use kernels::layout::{
 use points::{Cloud, PointSet};
 use scene::{
     Albedo, FeatureSize, Material, MaterialKind, Normals, Object, Polynomial, Refine, Scene,
-    TextureAxis,
+    TextureAxis, VolumeMode,
 };
 use std::sync::Arc;
 
@@ -153,6 +153,24 @@ impl Optics {
     }
 }
 
+fn is_isosurface(object: &Object) -> bool {
+    object.volume.as_ref().is_some_and(|volume| matches!(volume.mode, VolumeMode::Isosurface(_)))
+}
+
+/// Gives isosurfaces whose material has no albedo the colour that their transfer function says.
+pub(crate) fn color_isosurfaces(scene: &Scene, volumes: &Volumes, infos: &mut [ObjectInfo]) {
+    for volume in &volumes.infos {
+        let object = &scene.objects[volume.object as usize];
+        let has_transfer = object.volume.as_ref().is_some_and(|volume| volume.transfer.is_some());
+        let has_albedo = matches!(object.material.albedo, Albedo::Color(_));
+        let diffuse = object.material.kind == MaterialKind::Diffuse;
+        if is_isosurface(object) && has_transfer && diffuse && !has_albedo {
+            let color = volumes.color_of(volume, volume.iso);
+            infos[volume.object as usize].albedo = color.map(|channel| channel.clamp(0.0, 1.0));
+        }
+    }
+}
+
 /// What the points of an object have that its albedo takes.
 enum PointValues {
     None,
@@ -164,6 +182,12 @@ enum PointValues {
 fn point_values(object: &Object, set: &PointSet) -> Result<PointValues, PlanError> {
     if object.material.kind != MaterialKind::Diffuse {
         return Ok(PointValues::None);
+    }
+    if is_isosurface(object) {
+        return match object.material.albedo {
+            Albedo::Color(_) | Albedo::Default => Ok(PointValues::None),
+            _ => Err(PlanError::IsosurfaceAlbedo { name: object.name.clone() }),
+        };
     }
     let (name, file) = (&object.name, || object.points.display().to_string());
     Ok(match (&object.material.albedo, &set.colors) {

@@ -4,12 +4,15 @@
 use crate::PlanError;
 use crate::colors::{attribute_values, mapped};
 use kernels::layout::{
-    GridInfo, Point, VOLUME_AVERAGE, VOLUME_EMISSION, VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH,
-    VOLUME_SUM, VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
+    CELL_ABOVE, CELL_BELOW, CELL_LOOK, CELL_NOTHING, GridInfo, Point, Polynomial, VOLUME_AVERAGE,
+    VOLUME_EMISSION, VOLUME_EMITS, VOLUME_GRADIENT, VOLUME_ISOSURFACE, VOLUME_LIGHTS,
+    VOLUME_MAXIMUM, VOLUME_SCATTERS, VOLUME_SHEPARD, VOLUME_SPH, VOLUME_SUM, VolumeCell,
+    VolumeInfo, VolumePoint, VolumeStop,
 };
 use points::{Cloud, NeighborSearch, ObjectPoints, PointSet};
 use scene::{
-    Boundary, ColorMap, Object, PerParticle, Scene, Transfer, Volume, VolumeKernel, VolumeMode,
+    Boundary, ColorMap, MaterialKind, Object, PerParticle, Scene, Transfer, Volume, VolumeKernel,
+    VolumeMode, VolumeShading,
 };
 use std::sync::Arc;
 
@@ -144,8 +147,9 @@ pub(crate) fn plan_volumes(
     scene: &Scene,
     sets: &[Arc<PointSet>],
     world: &[Vec<[f64; 3]>],
-    origin: [f64; 3],
+    cloud: &Cloud,
 ) -> Result<Volumes, PlanError> {
+    let origin = cloud.origin;
     let mut volumes = Volumes { step: f32::MAX, ..Volumes::default() };
     for (index, object) in scene.objects.iter().enumerate() {
         let Some(volume) = &object.volume else { continue };
@@ -182,8 +186,9 @@ pub(crate) fn plan_volumes(
             })
             .filter(|(_, inverse_length)| inverse_length.is_finite())
             .collect();
-        let stops = stops_of(&volume.transfer, &scalars);
-        volumes.add(index as u32, volume, radius as f32, (points, stops));
+        let stops =
+            volume.transfer.as_ref().map_or(vec![NO_STOP], |transfer| stops_of(transfer, &scalars));
+        volumes.add(index as u32, object, volume, radius as f32, (points, stops));
     }
     if volumes.infos.iter().all(|info| info.kernel != VOLUME_SPH) {
         volumes.inverse_lengths = vec![0.0];
@@ -200,15 +205,32 @@ pub(crate) fn plan_volumes(
     if !volumes.infos.is_empty() && samples > MOST_SAMPLES {
         return Err(PlanError::TooManySamples { step: volumes.step, samples });
     }
+    let name = |info: &VolumeInfo| scene.objects[info.object as usize].name.clone();
     let count = volumes.infos.len();
-    match volumes.infos.iter().find(|info| info.mode != VOLUME_EMISSION) {
-        Some(info) if count > 1 => Err(PlanError::SeveralVolumes {
-            name: scene.objects[info.object as usize].name.clone(),
-            count,
-        }),
-        _ => Ok(volumes),
+    let alone = |info: &&VolumeInfo| [VOLUME_MAXIMUM, VOLUME_AVERAGE].contains(&info.mode);
+    if let Some(info) = volumes.infos.iter().find(alone).filter(|_| count > 1) {
+        return Err(PlanError::SeveralVolumes { name: name(info), count });
     }
+    let lit = volumes.infos.iter().find(|info| info.shading != VOLUME_EMITS);
+    let lights = scene.lights.len();
+    if let Some(info) = lit.filter(|_| lights > VOLUME_LIGHTS as usize) {
+        return Err(PlanError::TooManyVolumeLights { name: name(info), lights });
+    }
+    let refracts = |info: &&VolumeInfo| info.refracts != 0 && info.kernel == VOLUME_SHEPARD;
+    if let Some(info) = volumes.infos.iter().find(refracts) {
+        return Err(PlanError::OpenIsosurface { name: name(info) });
+    }
+    for (slot, info) in (cloud.points.len() as u32..)
+        .zip(volumes.infos.iter_mut().filter(|info| info.mode == VOLUME_ISOSURFACE))
+    {
+        info.slot = slot;
+    }
+    Ok(volumes)
 }
+
+/// The transfer function of a volume that has none.
+const NO_STOP: VolumeStop =
+    VolumeStop { color: [0.8; 3], extinction: 0.0, value: 0.0, pad: [0; 3] };
 
 /// What a particle reaches by, in scene units, and what its kernel is multiplied by.
 struct Particle {
@@ -262,6 +284,59 @@ impl Sph<'_> {
 }
 
 impl Volumes {
+    /// Whether anything is seen along the way of a ray.
+    #[must_use]
+    pub fn any_marched(&self) -> bool {
+        self.infos.iter().any(|info| info.mode != VOLUME_ISOSURFACE)
+    }
+
+    /// Whether there are isosurfaces.
+    #[must_use]
+    pub fn any_isosurface(&self) -> bool {
+        self.infos.iter().any(|info| info.mode == VOLUME_ISOSURFACE)
+    }
+
+    /// Whether the light of the scene counts in any.
+    #[must_use]
+    pub fn any_lit(&self) -> bool {
+        self.infos.iter().any(|info| info.shading != VOLUME_EMITS)
+    }
+
+    /// The colour that a volume's transfer function gives a scalar.
+    pub(crate) fn color_of(&self, info: &VolumeInfo, scalar: f32) -> [f32; 3] {
+        let first = info.first_stop as usize;
+        let stops = &self.stops[first..first + info.stop_count as usize];
+        let above = stops[1..].partition_point(|stop| stop.value <= scalar);
+        let (from, to) = (&stops[above], &stops[(above + 1).min(stops.len() - 1)]);
+        let span = to.value - from.value;
+        let part = if span > 0.0 { ((scalar - from.value) / span).clamp(0.0, 1.0) } else { 0.0 };
+        [0, 1, 2].map(|i| from.color[i] + part * (to.color[i] - from.color[i]))
+    }
+
+    /// Which points are whose: of each volume its object and the range of its points.
+    pub fn point_ranges(&self) -> impl Iterator<Item = (&VolumeInfo, std::ops::Range<usize>)> {
+        self.infos.iter().map(|info| {
+            let first = self.cells[info.first_cell as usize].first as usize;
+            let last = info.first_cell as usize + info.grid.cell_count() as usize;
+            (info, first..self.cells[last].first as usize)
+        })
+    }
+
+    /// Polynomials without a surface, at the slots of the isosurfaces: they say whose those are.
+    #[must_use]
+    pub fn stand_ins(&self) -> Vec<Polynomial> {
+        let isosurfaces = self.infos.iter().filter(|info| info.mode == VOLUME_ISOSURFACE);
+        let stand_in = |info: &VolumeInfo| Polynomial {
+            center_trust: [0.0; 4],
+            gradient_offset: [0.0, 0.0, 1.0, 0.0],
+            curvature: [0.0; 4],
+            cross_terms: [0.0; 2],
+            object: info.object,
+            index: u32::MAX,
+        };
+        isosurfaces.map(stand_in).collect()
+    }
+
     /// Bytes of all of it.
     #[must_use]
     pub fn bytes(&self) -> u64 {
@@ -274,7 +349,8 @@ impl Volumes {
 
     fn add(
         &mut self,
-        object: u32,
+        index: u32,
+        object: &Object,
         volume: &Volume,
         radius: f32,
         (points, stops): (Vec<(VolumePoint, f32)>, Vec<VolumeStop>),
@@ -306,13 +382,28 @@ impl Volumes {
             kernel,
             square_radius: radius * radius,
             inverse_width: 1.0 / (2.0 * smoothing),
-            object,
+            object: index,
             bounded: u32::from(volume.boundary != Boundary::None),
             high,
             mode: match volume.mode {
-                VolumeMode::Emission | VolumeMode::Isosurface(_) => VOLUME_EMISSION,
+                VolumeMode::Emission => VOLUME_EMISSION,
                 VolumeMode::Maximum => VOLUME_MAXIMUM,
                 VolumeMode::Average => VOLUME_AVERAGE,
+                VolumeMode::Isosurface(_) => VOLUME_ISOSURFACE,
+            },
+            iso: match volume.mode {
+                VolumeMode::Isosurface(iso) => iso as f32,
+                _ => 0.0,
+            },
+            slot: 0,
+            refracts: u32::from(
+                matches!(volume.mode, VolumeMode::Isosurface(_))
+                    && matches!(object.material.kind, MaterialKind::Glass { .. }),
+            ),
+            shading: match volume.shading {
+                VolumeShading::None => VOLUME_EMITS,
+                VolumeShading::Gradient => VOLUME_GRADIENT,
+                VolumeShading::Scatter => VOLUME_SCATTERS,
             },
         };
         self.list(&info, &points);
@@ -349,8 +440,8 @@ impl Volumes {
         );
     }
 
-    /// 1 for each cell from which a point in reach may be seen: there are points in the cells around, and
-    /// some value that they can have together has an extinction.
+    /// What may be seen from each cell: something, where there are points in the cells around, and some
+    /// value that they can have together has an extinction; or on which side of an isosurface all of it is.
     fn cells_seen(
         &self,
         info: &VolumeInfo,
@@ -385,15 +476,23 @@ impl Volumes {
                 }
                 _ => (low, high),
             };
-            // What cannot be seen counts too, where not each place is seen for itself.
-            count > 0 && (info.mode != VOLUME_EMISSION || self.has_extinction(info, low, high))
+            let margin = rounding(low, high);
+            match info.mode {
+                _ if count == 0 => CELL_NOTHING,
+                VOLUME_ISOSURFACE if high + margin < info.iso => CELL_BELOW,
+                VOLUME_ISOSURFACE if low - margin > info.iso => CELL_ABOVE,
+                VOLUME_ISOSURFACE => CELL_LOOK,
+                VOLUME_EMISSION if !self.has_extinction(info, low, high) => CELL_NOTHING,
+                // What cannot be seen counts too, where not each place is seen for itself.
+                _ => CELL_LOOK,
+            }
         };
-        ranges.into_iter().map(|range| u32::from(seen(range))).chain([0]).collect()
+        ranges.into_iter().map(seen).chain([CELL_NOTHING]).collect()
     }
 
     /// Whether the transfer function is above zero anywhere from `low` to `high`, and a rounding farther.
     fn has_extinction(&self, info: &VolumeInfo, low: f32, high: f32) -> bool {
-        let margin = 1e-5 * low.abs().max(high.abs());
+        let margin = rounding(low, high);
         let (low, high) = (low - margin, high + margin);
         let first = info.first_stop as usize;
         let stops = &self.stops[first..first + info.stop_count as usize];
@@ -411,6 +510,11 @@ impl Volumes {
             || (low <= least.value && least.extinction > 0.0)
             || (high >= last.value && last.extinction > 0.0)
     }
+}
+
+/// How far beyond the greatest and least of some values rounding may take what is made of them.
+fn rounding(low: f32, high: f32) -> f32 {
+    1e-5 * low.abs().max(high.abs())
 }
 
 /// A transfer function as stops.

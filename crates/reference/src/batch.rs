@@ -32,7 +32,8 @@ pub(crate) fn test_batch<R: Real>(
         let own =
             sheet.is_some_and(|(normal, object)| p.object == object && p.same_sheet(o, normal));
         let from = if own { R::of(SHEET_REACH) * p.trust } else { R::of(0.0) };
-        let t = p.intersect(o, d, from);
+        let passed = p.object == ray.passed;
+        let t = if passed { R::of(NO_HIT) } else { p.intersect(o, d, from) };
         let first_of_equals = || {
             polynomials
                 .get(ray.hit_slot as usize)

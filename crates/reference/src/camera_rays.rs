@@ -22,6 +22,8 @@ pub struct Ray<R> {
     pub hit_slot: u32,
     /// The point whose surface it starts on, or `NONE`.
     pub left: u32,
+    /// The object whose surface is not there for it, or `NONE`.
+    pub passed: u32,
     /// The cell that it is in, or `NONE`.
     pub cell: u32,
     /// Cells crossed so far.
@@ -85,6 +87,7 @@ impl<R: Real> Ray<R> {
             after: R::of(0.0),
             hit_slot: NONE,
             left,
+            passed: NONE,
             cell: grid.enter(origin, direction),
             cells: 0,
             tests: 0,

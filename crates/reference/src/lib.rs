@@ -21,10 +21,12 @@ pub mod grid;
 pub mod grid_build;
 pub mod grid_trace;
 pub mod image;
+pub mod isosurface;
 pub mod least_squares;
 pub mod light;
 pub mod media;
 pub mod optics;
+pub mod point_light;
 pub mod polynomial;
 pub mod projection;
 pub mod real;
@@ -44,8 +46,9 @@ use fit_polynomials::Fitted;
 use grid::Grid;
 use grid_build::CellLists;
 use grid_trace::grid_trace;
-use kernels::layout::{FilmPixel, FitOutcome, GridInfo};
+use kernels::layout::{FilmPixel, FitOutcome, GridInfo, VOLUME_LIGHTS};
 use plan::{Picture, Plan, Rays, Window};
+use point_light::point_lights;
 use points::{NeighborSearch, Rims, Watch, plan_grid};
 use polynomial::Polynomial;
 use rayon::prelude::*;
@@ -71,6 +74,8 @@ pub struct Reference<R> {
     pub lists: CellLists,
     /// The points of each cell, each once; empty where nothing is refined.
     pub point_cells: PointCells,
+    /// Of the points of all volumes: how much of each light's reaches them; empty where no volume is lit.
+    pub visible: Vec<[R; VOLUME_LIGHTS as usize]>,
 }
 
 impl<R: Real> Reference<R> {
@@ -127,8 +132,12 @@ impl<R: Real> Reference<R> {
             rim::clip_ball(&mut polynomials[clip.slot as usize], &clip);
         }
         let lists = grid_build::build_grid(&grid, &polynomials, &cloud.order);
+        polynomials.extend(plan.volumes.stand_ins().iter().map(Polynomial::from));
         watch.done(1);
-        Some(Self { polynomials, outcomes, grid, lists, point_cells })
+        let visible = Vec::new();
+        let mut reference = Self { polynomials, outcomes, grid, lists, point_cells, visible };
+        reference.visible = point_lights(&reference, plan);
+        Some(reference)
     }
 
     /// Traces one picture of the plan that this was made for; `None` where the watcher asked for an

@@ -47,6 +47,22 @@ impl From<Polynomial<f32>> for layout::Polynomial {
     }
 }
 
+impl<R: Real> From<&layout::Polynomial> for Polynomial<R> {
+    fn from(p: &layout::Polynomial) -> Self {
+        let vector = |v: [f32; 4]| V3::of_f32([v[0], v[1], v[2]]);
+        Self {
+            center: vector(p.center_trust),
+            trust: R::of_f32(p.center_trust[3]),
+            gradient: vector(p.gradient_offset),
+            offset: R::of_f32(p.gradient_offset[3]),
+            diagonal: vector(p.curvature),
+            off: V3::of_f32([p.curvature[3], p.cross_terms[0], p.cross_terms[1]]),
+            object: p.object,
+            index: p.index,
+        }
+    }
+}
+
 /// The nearest approach of a ray to a point: s along the ray, y₀ from the point.
 fn nearest_approach<R: Real>(o: V3<R>, d: V3<R>, center: V3<R>) -> (R, V3<R>) {
     let from_center = o - center;

@@ -11,13 +11,14 @@ use crate::disc_trace::disc_trace;
 use crate::environment::background_at;
 use crate::grid::Grid;
 use crate::grid_trace::grid_trace;
+use crate::isosurface::{blocks, isosurface};
 use crate::media::{Media, ior_of, transmittance};
 use crate::optics::{reflected, refraction};
 use crate::real::{NO_HIT, Real, V3};
 use crate::sampler::sample_1d;
 use crate::shade::{lambert, place_on_light, shadow_ray};
 use crate::surface_hit::Hit;
-use crate::volume::{March, march};
+use crate::volume::{Lighting, March, march};
 use kernels::layout::{
     CHANNELS_ALL, FilmPixel, MATERIAL_DIFFUSE, MATERIAL_GLASS, MOST_CROSSINGS, NONE,
     SAMPLE_FRESNEL, WaveParams,
@@ -73,7 +74,13 @@ impl<R: Real> PixelTrace<'_, R> {
                 }
                 None => self.trace(&mut ray, false),
             }
-            let (hit, iterations) = self.reference.settle(self.plan, self.grid, &mut ray);
+            let (mut hit, mut iterations) = self.reference.settle(self.plan, self.grid, &mut ray);
+            let end = hit.as_ref().map_or(R::of(NO_HIT), |(hit, _)| hit.t);
+            if let Some((nearer, slot)) = isosurface(&ray, end, &path.media, &self.plan.volumes) {
+                hit = Some((nearer, self.reference.polynomials[slot as usize].object));
+                ray.hit_slot = slot;
+                iterations = 0;
+            }
             self.account(&ray, hit.as_ref(), iterations, from_camera);
             self.interact(&ray, hit, path, from_camera, &mut rays);
             from_camera = false;
@@ -124,7 +131,7 @@ impl<R: Real> PixelTrace<'_, R> {
         rays: &mut Vec<(Ray<R>, Path<R>)>,
     ) {
         let end = hit.as_ref().map_or(R::of(NO_HIT), |(hit, _)| hit.t);
-        if let Some(march) = self.march(ray, end, &path.media) {
+        if let Some(march) = self.march(ray, end, &path.media, self.lighting()) {
             path.emitted = path.emitted + path.throughput * march.color;
             path.throughput = path.throughput.times(march.transmittance);
             path.coverage = R::of(1.0) - march.transmittance;
@@ -157,9 +164,22 @@ impl<R: Real> PixelTrace<'_, R> {
     }
 
     /// What the volumes of the scene do to a ray; `None` where there are none.
-    fn march(&self, ray: &Ray<R>, end: R, media: &Media) -> Option<March<R>> {
+    fn march(
+        &self,
+        ray: &Ray<R>,
+        end: R,
+        media: &Media,
+        lighting: Option<Lighting<'_, R>>,
+    ) -> Option<March<R>> {
         let volumes = &self.plan.volumes;
-        (!volumes.infos.is_empty()).then(|| march(ray, end, media, volumes))
+        volumes.any_marched().then(|| march(ray, end, media, volumes, lighting))
+    }
+
+    fn lighting(&self) -> Option<Lighting<'_, R>> {
+        self.plan
+            .volumes
+            .any_lit()
+            .then_some(Lighting { visible: &self.reference.visible, lights: &self.plan.lights })
     }
 
     fn background(&self, direction: V3<R>) -> V3<R> {
@@ -176,8 +196,8 @@ impl<R: Real> PixelTrace<'_, R> {
             self.rays.shadow += 1;
             self.trace(&mut ray, true);
             self.account(&ray, None, 0, false);
-            if ray.hit_slot == NONE {
-                let arriving = match self.march(&ray, ray.hit_t, media) {
+            if ray.hit_slot == NONE && !blocks(&ray, ray.hit_t, &self.plan.volumes) {
+                let arriving = match self.march(&ray, ray.hit_t, media, None) {
                     Some(march) => arriving.times(march.transmittance),
                     None => arriving,
                 };

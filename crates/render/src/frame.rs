@@ -5,19 +5,21 @@
 //! are the rays from its diffuse hits towards each light. Between waves the rays that go on are moved
 //! together, so that those that ended cost nothing.
 
+mod in_volumes;
+
 use crate::RenderError;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
     AlbedoIo, CameraRays, CameraRaysIo, Classify, ClassifyIo, DiscTrace, DiscTraceIo, GridTrace,
-    GridTraceIo, ListLive, March, MarchIo, Marched, Records, Refine, RefineIo, Scatter, ScatterIo,
-    Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start, SurfaceHit, SurfaceHitIo,
+    GridTraceIo, Isosurface, ListLive, March, PointLight, Records, Refine, RefineIo, Scatter,
+    ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start, SurfaceHit, SurfaceHitIo,
 };
 use crate::samples::Samples;
 use crate::state::RayState;
 use crate::volumes::VolumeBuffers;
 use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder, Timings};
-use kernels::layout::{FilmPixel, Hit, MarchParams, TraceParams, WaveParams};
+use kernels::layout::{FilmPixel, Hit, NONE, TraceParams, WaveParams};
 use plan::{Picture, Plan, Rays, Window, camera_wave};
 use points::Watch;
 use points::device::Scan;
@@ -98,6 +100,8 @@ struct Passes {
     shade: Shade,
     scatter: Scatter,
     march: March,
+    isosurface: Isosurface,
+    point_light: PointLight,
     list_live: ListLive,
     scan: Scan,
 }
@@ -115,6 +119,8 @@ impl Passes {
             shade: Shade::new(device)?,
             scatter: Scatter::new(device)?,
             march: March::new(device)?,
+            isosurface: Isosurface::new(device)?,
+            point_light: PointLight::new(device)?,
             list_live: ListLive::new(device, rays)?,
             scan: Scan::new(device)?,
         })
@@ -132,6 +138,14 @@ enum Traced {
     Scattered,
     /// From surfaces towards a light, as far as the first hit.
     Shadows,
+    /// From the points of a volume towards a light, past the surface of their object.
+    PastObject(u32),
+}
+
+impl Traced {
+    fn to_light(self) -> bool {
+        matches!(self, Self::Shadows | Self::PastObject(_))
+    }
 }
 
 impl Renderer {
@@ -159,6 +173,7 @@ impl Renderer {
             &plan.fits,
             plan.grid_resolution,
             plan.refines(),
+            &plan.volumes.stand_ins(),
             watch,
         )?;
         let tiles = plan.tiles();
@@ -214,6 +229,9 @@ impl Renderer {
         watch.stage("tracing", plan.window.pixels() as u64 * u64::from(plan.samples));
         let mut pixels =
             vec![EMPTY_PIXEL; (self.film.bytes() / size_of::<FilmPixel>() as u64) as usize];
+        let started = Instant::now();
+        self.light_points(plan, &mut stats, watch)?;
+        stats.trace += started.elapsed();
         for tile in plan.tiles() {
             let started = Instant::now();
             for sample in 0..plan.samples {
@@ -251,6 +269,7 @@ impl Renderer {
             self.trace_to_the_end(plan, [params.ray_count; 2], traced, stats, watch)?;
             traced = if traced == Traced::Scattered { traced } else { Traced::Camera };
             self.settle_hits(plan, params.ray_count, traced, stats, watch)?;
+            self.isosurfaces(plan, params.ray_count, false, stats, watch)?;
             self.march(plan, params.ray_count, false, stats, watch)?;
             let lit = self.classify(plan, &params, stats)?;
             self.shade(plan, &WaveParams { ray_count: lit, ..params }, stats, watch)?;
@@ -303,9 +322,14 @@ impl Renderer {
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
         let cells = if plan.cells_per_pass == 0 { u32::MAX } else { plan.cells_per_pass };
-        let any_hit = u32::from(traced == Traced::Shadows);
-        let wave = TraceParams { ray_count, cells, work: WORK_PER_PASS, any_hit, listed: 0 };
-        let state = if traced == Traced::Shadows { &mut self.shadows } else { &mut self.state };
+        let any_hit = u32::from(traced.to_light());
+        let passed = match traced {
+            Traced::PastObject(object) => object,
+            _ => NONE,
+        };
+        let wave =
+            TraceParams { ray_count, cells, work: WORK_PER_PASS, any_hit, listed: 0, passed };
+        let state = if traced.to_light() { &mut self.shadows } else { &mut self.state };
         let (surfaces, live, live_rays) = (&self.surfaces, &self.live, &self.passes.list_live.rays);
         let mut params = wave;
         while alive > 0 {
@@ -325,7 +349,9 @@ impl Renderer {
                     }
                     let from = match traced {
                         Traced::ByDiscs(_) | Traced::Camera => Start::Camera,
-                        Traced::Scattered | Traced::Shadows => Start::Surface,
+                        Traced::Scattered | Traced::Shadows | Traced::PastObject(_) => {
+                            Start::Surface
+                        }
                     };
                     let io = GridTraceIo { surfaces, state, live, live_rays };
                     self.passes.grid_trace.record(&mut self.recorder, io, from, &params);
@@ -354,7 +380,8 @@ impl Renderer {
         stats: &mut FrameStats,
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
-        let params = TraceParams { ray_count, cells: 0, work: 0, any_hit: 0, listed: 0 };
+        let params =
+            TraceParams { ray_count, cells: 0, work: 0, any_hit: 0, listed: 0, passed: NONE };
         let bytes = u64::from(ray_count) * size_of::<Hit>() as u64;
         self.recorder.fill(&self.hits, 0, bytes, 0);
         loop {
@@ -421,50 +448,6 @@ impl Renderer {
         Ok(counts)
     }
 
-    /// The way of a wave's rays, or of its shadow rays, through the volumes of the scene, if it has any.
-    fn march(
-        &mut self,
-        plan: &Plan,
-        ray_count: u32,
-        shadows: bool,
-        stats: &mut FrameStats,
-        watch: &dyn Watch,
-    ) -> Result<(), RenderError> {
-        let Some(volumes) = &self.volumes else { return Ok(()) };
-        let io = MarchIo {
-            state: if shadows { &self.shadows.current } else { &self.state.current },
-            volumes,
-            paths: self.wave.paths(),
-            live: &self.live,
-            marched: match shadows {
-                false => Marched::Wave { hits: &self.hits },
-                true => Marched::Shadows {
-                    lit_rays: self.wave.lit_rays(),
-                    light_sums: self.wave.light_sums(),
-                },
-            },
-        };
-        let params = MarchParams {
-            ray_count,
-            volume_count: plan.volumes.infos.len() as u32,
-            step: plan.volumes.step,
-            work: WORK_PER_PASS / 2, // two loops a sample
-        };
-        let bytes = u64::from(ray_count) * size_of::<kernels::layout::March>() as u64;
-        self.recorder.fill(&volumes.marches, 0, bytes, 0);
-        let mut left = [u32::MAX];
-        while left != [0] {
-            if watch.interrupted() {
-                return Err(RenderError::Interrupted);
-            }
-            self.recorder.fill(&self.live, 0, 4, 0);
-            self.passes.march.record(&mut self.recorder, io, &params);
-            stats.add_kernels(&self.recorder.submit()?.passes);
-            self.live.read(0, &mut left)?;
-        }
-        Ok(())
-    }
-
     /// What becomes of each ray of a wave; returns how many hit a diffuse surface.
     fn classify(
         &mut self,
@@ -524,6 +507,7 @@ impl Renderer {
             self.passes.shadow_rays.record(&mut self.recorder, io, &params);
             self.shadows.swap();
             self.trace_to_the_end(plan, [params.ray_count; 2], Traced::Shadows, stats, watch)?;
+            self.isosurfaces(plan, params.ray_count, true, stats, watch)?;
             self.march(plan, params.ray_count, true, stats, watch)?;
         }
         let io = ShadeIo {

@@ -1,7 +1,7 @@
 //! The volumes of a scene on a device.
 
 use gpu::{Buffer, Device, GpuError};
-use kernels::layout::March;
+use kernels::layout::{IsoSearch, March, MarchLight, VOLUME_LIGHTS};
 use plan::Volumes;
 use std::sync::Arc;
 
@@ -13,6 +13,12 @@ pub(crate) struct VolumeBuffers {
     pub inverse_lengths: Buffer,
     pub stops: Buffer,
     pub marches: Buffer,
+    /// Beside the marches, where volumes are lit.
+    pub march_lights: Buffer,
+    /// What of each light's reaches each point, where volumes are lit.
+    pub visible: Buffer,
+    /// How far the rays of a wave have looked for isosurfaces.
+    pub searches: Buffer,
 }
 
 impl VolumeBuffers {
@@ -25,7 +31,11 @@ impl VolumeBuffers {
         if volumes.infos.is_empty() {
             return Ok(None);
         }
-        let bytes = u64::from(rays) * size_of::<March>() as u64;
+        let of = |name, needed: bool, count: u64, size: usize| {
+            Buffer::new(device, name, if needed { count } else { 1 } * size as u64)
+        };
+        let rays = u64::from(rays);
+        let (lit, points) = (volumes.any_lit(), volumes.points.len() as u64);
         Ok(Some(Self {
             infos: Buffer::from_slice(device, "volumes", &volumes.infos)?,
             cells: Buffer::from_slice(device, "volume cells", &volumes.cells)?,
@@ -36,7 +46,10 @@ impl VolumeBuffers {
                 &volumes.inverse_lengths,
             )?,
             stops: Buffer::from_slice(device, "transfer functions", &volumes.stops)?,
-            marches: Buffer::new(device, "marches", bytes)?,
+            marches: of("marches", true, rays, size_of::<March>())?,
+            march_lights: of("light of marches", lit, rays, size_of::<MarchLight>())?,
+            visible: of("visible lights", lit, points, 4 * VOLUME_LIGHTS as usize)?,
+            searches: of("searches", volumes.any_isosurface(), rays, size_of::<IsoSearch>())?,
         }))
     }
 }

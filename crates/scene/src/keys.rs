@@ -642,14 +642,23 @@ pub(crate) static VOLUME: Table = Table {
             Kind::Choice(&["emission", "maximum", "average", "isosurface"]),
             Value("\"emission\""),
             "What a ray shows: emission and extinction along its way; the greatest scalar on it, as a layer \
-             of one `radius`; the mean scalar, all along the way; or the first place where the scalar is \
-             `iso`. All but `emission` need the scene's only volume.",
+             of one `radius`; the mean scalar, all along the way; or the surface where the scalar is `iso`, \
+             with the object's material, lit like any other. `maximum` and `average` need the scene's only \
+             volume.",
         ),
         key(
             "iso",
             Kind::Number(numbers(-LARGE, LARGE, "in the attribute's unit")),
             Words("none; required where the mode is isosurface", "0.5"),
-            "Mode `isosurface` only: the scalar on the surface.",
+            "Mode `isosurface` only: the scalar on the surface. Of glass, the inside is where it is greater.",
+        ),
+        key(
+            "shading",
+            Kind::Choice(&["none", "gradient", "scatter"]),
+            Value("\"none\""),
+            "Mode `emission` only: colours are emitted, or they scatter the light of up to four lights that \
+             reaches the points, past surfaces and volumes: as a surface across the scalar's gradient would, \
+             or evenly to all sides.",
         ),
         key(
             "boundary",

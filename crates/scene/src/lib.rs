@@ -33,7 +33,7 @@ pub use scene::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
     ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, Polynomial,
     Primary, Projection, RayLoop, Refine, RenderSettings, Scene, Stop, Surface, TextureAxis,
-    Transfer, Up, Volume, VolumeKernel, VolumeMode,
+    Transfer, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
 };
 pub use schema::json_schema;
 pub use transform::Transform;

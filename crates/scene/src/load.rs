@@ -9,7 +9,7 @@ use crate::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
     ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, Polynomial,
     Primary, Projection, RayLoop, Refine, RenderSettings, Scene, SceneError, Stop, Surface,
-    TextureAxis, Transfer, Transform, Up, Volume, VolumeKernel, VolumeMode,
+    TextureAxis, Transfer, Transform, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
 };
 use std::env;
 use std::fs::{self, File};
@@ -379,12 +379,22 @@ impl Volume {
                 _ => VolumeMode::Emission,
             },
             transfer: match table.written("color_map") {
-                Some(_) => Transfer::Map {
+                Some(_) => Some(Transfer::Map {
                     color_map: ColorMap::read(&table.text("color_map")),
                     range: table.written_range("value_range"),
-                    extinction: table.pair("extinction"),
-                },
-                None => Transfer::Stops(stops.iter().map(Stop::read).collect()),
+                    // None is asked for, and none is needed, by an isosurface.
+                    extinction: match table.written("extinction") {
+                        Some(_) => table.pair("extinction"),
+                        None => [0.0; 2],
+                    },
+                }),
+                None if stops.is_empty() => None,
+                None => Some(Transfer::Stops(stops.iter().map(Stop::read).collect())),
+            },
+            shading: match table.text("shading").as_str() {
+                "gradient" => VolumeShading::Gradient,
+                "scatter" => VolumeShading::Scatter,
+                _ => VolumeShading::None,
             },
         }
     }

@@ -32,11 +32,6 @@ const fn value(path: &'static str, when: When, instead: &'static str) -> NotBuil
 pub(crate) const NOT_BUILT: &[NotBuilt] = &[
     value("render.loop", When::Is(&["queue"]), "use \"images\" or \"auto\""),
     key("objects.filter"),
-    value(
-        "objects.volume.mode",
-        When::Is(&["isosurface"]),
-        "use \"emission\", \"maximum\" or \"average\"",
-    ),
 ];
 
 /// The entry of a key, if it has one.

@@ -208,8 +208,22 @@ pub struct Volume {
     pub boundary: Boundary,
     /// What a ray shows.
     pub mode: VolumeMode,
-    /// What each scalar looks like.
-    pub transfer: Transfer,
+    /// What each scalar looks like; of an isosurface whose material has no albedo, the colour at its
+    /// scalar.
+    pub transfer: Option<Transfer>,
+    /// What the light of the scene does in it.
+    pub shading: VolumeShading,
+}
+
+/// What the light of the scene does in a volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VolumeShading {
+    /// Nothing: colours are emitted.
+    None,
+    /// It is scattered by Lambert's law, as by a surface across the scalar's gradient.
+    Gradient,
+    /// It is scattered evenly to all sides.
+    Scatter,
 }
 
 /// What a ray through a volume shows.

@@ -3,7 +3,7 @@
 use crate::{
     Albedo, Boundary, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Normals, Object,
     PerParticle, Polynomial, Projection, Refine, RenderSettings, Scene, Surface, TextureAxis,
-    Transfer, Volume, VolumeKernel, VolumeMode,
+    Transfer, Volume, VolumeKernel, VolumeMode, VolumeShading,
 };
 use std::fmt::{self, Write};
 
@@ -156,10 +156,19 @@ fn write_volume(out: &mut String, volume: &Volume) -> fmt::Result {
             writeln!(out, "iso = {iso:?}")?;
         }
     }
+    if volume.mode == VolumeMode::Emission {
+        let shading = match volume.shading {
+            VolumeShading::None => "none",
+            VolumeShading::Gradient => "gradient",
+            VolumeShading::Scatter => "scatter",
+        };
+        writeln!(out, "shading = \"{shading}\"")?;
+    }
     writeln!(out, "boundary = {}", quoted(boundary))?;
     let stops = match &volume.transfer {
-        Transfer::Stops(stops) => stops,
-        Transfer::Map { color_map, range, extinction } => {
+        None => return Ok(()),
+        Some(Transfer::Stops(stops)) => stops,
+        Some(Transfer::Map { color_map, range, extinction }) => {
             writeln!(out, "color_map = \"{}\"", color_map.name())?;
             if let Some(range) = range {
                 writeln!(out, "value_range = {range:?}")?;

@@ -143,10 +143,10 @@ fn image_file(as_written: &str) -> ImageFile {
     ImageFile { path: Path::new("scenes").join(as_written), as_written: as_written.into() }
 }
 
-fn stop_count(transfer: &Transfer) -> usize {
+fn stop_count(transfer: Option<&Transfer>) -> usize {
     match transfer {
-        Transfer::Stops(stops) => stops.len(),
-        Transfer::Map { .. } => 0,
+        Some(Transfer::Stops(stops)) => stops.len(),
+        _ => 0,
     }
 }
 
@@ -273,10 +273,11 @@ fn every_built_key_is_read() {
         step: Some(0.01),
         boundary: Boundary::Attribute("skin".into()),
         mode: VolumeMode::Emission,
-        transfer: Transfer::Stops(vec![
+        transfer: Some(Transfer::Stops(vec![
             stop(0.0, [0.0, 0.0, 1.0], 0.0),
             stop(1.0, [1.0, 0.3, 0.0], 8.0),
-        ]),
+        ])),
+        shading: VolumeShading::None,
     };
     assert_eq!(scene.objects[5].volume, Some(volume));
     let map = Transfer::Map {
@@ -284,7 +285,8 @@ fn every_built_key_is_read() {
         range: Some([0.25, 0.75]),
         extinction: [0.5, 4.0],
     };
-    assert_eq!(scene.objects[6].volume.as_ref().map(|volume| &volume.transfer), Some(&map));
+    let volume_of = |i: usize| scene.objects[i].volume.as_ref();
+    assert_eq!(volume_of(6).and_then(|volume| volume.transfer.as_ref()), Some(&map));
     let sph = VolumeKernel::Sph {
         smoothing_length: PerParticle::Attribute("h".into()),
         mass: Some(PerParticle::Number(0.125)),
@@ -441,7 +443,7 @@ transfer = [                   # stops, ascending in value
 "#;
     let scene = read(text).unwrap();
     assert_eq!(
-        scene.objects[0].volume.as_ref().map(|volume| stop_count(&volume.transfer)),
+        scene.objects[0].volume.as_ref().map(|volume| stop_count(volume.transfer.as_ref())),
         Some(2)
     );
 }
@@ -458,6 +460,16 @@ fn a_volume_says_once_what_a_scalar_looks_like() {
         (format!("{stops}extinction = 1"), "extinction: belongs to color_map"),
         (format!("{stops}iso = 1"), "iso: belongs to mode \"isosurface\""),
         (format!("{stops}mass = 1"), "mass: belongs to kernel \"sph\""),
+        (format!("{stops}mode = \"isosurface\""), "iso: missing"),
+        ("mode = \"isosurface\"\niso = 1\nboundary = \"all\"".into(), "boundary: found \"all\""),
+        (
+            "mode = \"isosurface\"\niso = 0\nkernel = \"sum\"".into(),
+            "iso: found 0, expected more than 0",
+        ),
+        (
+            "mode = \"isosurface\"\niso = 1\nshading = \"scatter\"".into(),
+            "shading: belongs to mode \"emission\"",
+        ),
     ];
     for (keys, expected) in cases {
         let found = error(&with(&keys));
@@ -466,7 +478,8 @@ fn a_volume_says_once_what_a_scalar_looks_like() {
     let constant = with("color_map = \"gray\"\nextinction = 2.5");
     let scene = read(&constant).unwrap();
     let map = Transfer::Map { color_map: ColorMap::Gray, range: None, extinction: [2.5, 2.5] };
-    assert_eq!(scene.objects[0].volume.as_ref().map(|volume| &volume.transfer), Some(&map));
+    let volume = scene.objects[0].volume.as_ref();
+    assert_eq!(volume.and_then(|volume| volume.transfer.as_ref()), Some(&map));
 }
 
 #[test]
@@ -485,7 +498,7 @@ fn a_transfer_function_comes_from_a_file_of_its_own() {
     let scene = Scene::load(&scene_file, &[]).unwrap();
     let stop = |value, color, extinction| Stop { value, color, extinction };
     let stops = vec![stop(1.0, [1.0, 0.0, 0.0], 2.0), stop(3.0, [1.0, 1.0, 0.0], 4.0)];
-    let found = scene.objects[0].volume.as_ref().map(|volume| volume.transfer.clone());
+    let found = scene.objects[0].volume.as_ref().and_then(|volume| volume.transfer.clone());
     assert_eq!(found, Some(Transfer::Stops(stops)));
     // A picture's settings do not depend on the file.
     let settings = scene.settings_toml();
@@ -866,14 +879,15 @@ fn settings_state_every_built_key() {
     // Instead of the colour that FULL has.
     let sky = read(&format!("background.environment = \"sky.exr\"\n{SMALL}"));
     settings += &sky.unwrap().settings_toml();
+    // Instead of a volume along the way.
+    let iso = "[objects.volume]\nscalar = \"s\"\nmode = \"isosurface\"\niso = 0.5\n";
+    settings += &read(&format!("{SMALL}{iso}")).unwrap().settings_toml();
     for (name, path) in keys {
         let stated = settings.lines().any(|line| line.starts_with(&format!("{name} = ")));
         // Three change no picture; the Abbe number is in the indices.
         let unseen =
             ["render.cells_per_pass", "render.loop", "render.primary", "objects.material.abbe"]
                 .contains(&path.as_str());
-        // Of what is not built.
-        let unseen = unseen || name == "iso";
         assert_eq!(stated, !unseen, "{path}");
     }
 }

@@ -104,17 +104,18 @@ pub(crate) fn background_is_one(background: &Reader<'_>) -> Result<(), Fault> {
 /// What a volume shows is stated once, and each kernel and mode has its keys.
 pub(crate) fn volume_says_it_once(volume: &Reader<'_>) -> Result<(), Fault> {
     let has = |name: &str| volume.written(name).is_some();
+    let surface = volume.text("mode") == "isosurface";
     match (has("transfer"), has("color_map")) {
         (true, true) => {
             let message = "found both transfer and color_map, expected one of them; remove one";
             return Err(("color_map", message.into()));
         }
-        (false, false) => {
+        (false, false) if !surface => {
             let message = "missing, and so is color_map, expected one of them; add e.g. color_map = \
                            \"viridis\" and extinction = [0.0, 5.0]";
             return Err(("transfer", message.into()));
         }
-        (false, true) if !has("extinction") => {
+        (false, true) if !surface && !has("extinction") => {
             let message = "missing, expected the extinction of what color_map shows; add e.g. extinction = \
                            [0.0, 5.0]";
             return Err(("extinction", message.into()));
@@ -133,8 +134,10 @@ pub(crate) fn volume_says_it_once(volume: &Reader<'_>) -> Result<(), Fault> {
         ("density", has("mass"), "mass, but there is none"),
         ("radius", volume.text("kernel") != "sph", "other kernels than \"sph\""),
         ("smoothing", volume.text("kernel") != "sph", "other kernels than \"sph\""),
-        ("iso", volume.text("mode") == "isosurface", "mode \"isosurface\", but mode is another"),
+        ("iso", surface, "mode \"isosurface\", but mode is another"),
+        ("shading", volume.text("mode") == "emission", "mode \"emission\", but mode is another"),
     ];
+    isosurface_fits(volume)?;
     for (name, fits, owner) in owned {
         if has(name) && !fits {
             return Err((name, format!("belongs to {owner}; remove one")));
@@ -142,7 +145,7 @@ pub(crate) fn volume_says_it_once(volume: &Reader<'_>) -> Result<(), Fault> {
     }
     let required = [
         ("smoothing_length", volume.text("kernel") == "sph", "kernel \"sph\"", "\"h\""),
-        ("iso", volume.text("mode") == "isosurface", "mode \"isosurface\"", "0.5"),
+        ("iso", surface, "mode \"isosurface\"", "0.5"),
     ];
     for (name, needed, owner, example) in required {
         if needed && !has(name) {
@@ -153,6 +156,31 @@ pub(crate) fn volume_says_it_once(volume: &Reader<'_>) -> Result<(), Fault> {
         }
     }
     stops_ascend(volume)
+}
+
+/// An isosurface is the object's only surface; that of a sum lies where there are points.
+fn isosurface_fits(volume: &Reader<'_>) -> Result<(), Fault> {
+    if volume.text("mode") != "isosurface" || volume.written("iso").is_none() {
+        return Ok(());
+    }
+    let boundary = volume.text("boundary");
+    if boundary != "none" {
+        let message = format!(
+            "found \"{boundary}\", expected \"none\" with mode \"isosurface\", which is the object's only \
+             surface; remove it"
+        );
+        return Err(("boundary", message));
+    }
+    let (iso, kernel) = (volume.number("iso"), volume.text("kernel"));
+    if kernel != "shepard" && iso <= 0.0 {
+        let message = format!(
+            "found {}, expected more than 0 with kernel \"{kernel}\", whose sum is 0 wherever no point is; \
+             raise it",
+            plain(iso)
+        );
+        return Err(("iso", message));
+    }
+    Ok(())
 }
 
 /// A transfer function's stops ascend in value.

@@ -68,7 +68,8 @@ pub enum BuildError {
 impl Surfaces {
     /// Fits every point of the cloud and sorts the fits into a grid. `fits` has one entry an object;
     /// `resolution` is the number of cells along the grid's longest axis, 0: chosen; `refines` also
-    /// lists what refinement of hits reads.
+    /// lists what refinement of hits reads. `stand_ins` come behind the polynomials of all points, and in
+    /// no cell.
     ///
     /// # Errors
     /// A device without the memory, a buffer over its limits, a lost device, an interruption.
@@ -78,11 +79,13 @@ impl Surfaces {
         fits: &[FitParams],
         resolution: u32,
         refines: bool,
+        stand_ins: &[Polynomial],
         watch: &dyn Watch,
     ) -> Result<Self, BuildError> {
-        let count = cloud.points.len();
-        let polynomials =
-            Buffer::new(device, "polynomials", (count * size_of::<Polynomial>()) as u64)?;
+        let fitted = (cloud.points.len() * size_of::<Polynomial>()) as u64;
+        let bytes = fitted + size_of_val(stand_ins) as u64;
+        let polynomials = Buffer::new(device, "polynomials", bytes)?;
+        polynomials.write(fitted, stand_ins)?;
         let (outcomes, outcome_buffer, rims) = fit_all(device, cloud, fits, &polynomials, watch)?;
         watch.stage("building the grid", 1);
         let grid = plan_grid(&cloud.points, &outcomes, resolution);

@@ -5,8 +5,9 @@ use crate::state::StateImages;
 use crate::volumes::VolumeBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    MARCH_CELLS, MARCH_LENGTHS, MARCH_POINTS, MARCH_STATE, MARCH_STOPS, MARCH_VOLUMES, MarchParams,
-    STATE_IN, TRACE_HITS, TRACE_LIVE, WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS,
+    MARCH_CELLS, MARCH_LENGTHS, MARCH_LIGHT, MARCH_POINTS, MARCH_STATE, MARCH_STOPS, MARCH_VISIBLE,
+    MARCH_VOLUMES, MarchParams, SHADE_LIGHTS, STATE_IN, TRACE_HITS, TRACE_LIVE, WAVE_LIGHT_SUMS,
+    WAVE_LIT_RAYS, WAVE_PATHS,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -14,8 +15,8 @@ use std::sync::Arc;
 /// Whose way is marched.
 #[derive(Clone, Copy)]
 pub(crate) enum Marched<'a> {
-    /// The rays of a wave, as far as their hits.
-    Wave { hits: &'a Buffer },
+    /// The rays of a wave, as far as their hits; where volumes are lit, by these lights.
+    Wave { hits: &'a Buffer, lights: Option<&'a Buffer> },
     /// Shadow rays, as far as their lights.
     Shadows { lit_rays: &'a Buffer, light_sums: &'a Buffer },
 }
@@ -34,6 +35,7 @@ pub(crate) struct MarchIo<'a> {
 /// Rays through volumes, sample after sample (\[T\] §6).
 pub(crate) struct March {
     wave: Kernel,
+    lit: Kernel,
     shadows: Kernel,
 }
 
@@ -60,6 +62,10 @@ impl March {
         };
         Ok(Self {
             wave: kernel(&spirv::march(), &[TRACE_HITS])?,
+            lit: kernel(
+                &spirv::march_lit(),
+                &[TRACE_HITS, SHADE_LIGHTS, MARCH_LIGHT, MARCH_VISIBLE],
+            )?,
             shadows: kernel(&spirv::march_shadows(), &[WAVE_LIT_RAYS, WAVE_LIGHT_SUMS])?,
         })
     }
@@ -67,7 +73,8 @@ impl March {
     /// Records one pass.
     pub fn record(&self, rec: &mut Recorder, io: MarchIo<'_>, params: &MarchParams) {
         let kernel = match io.marched {
-            Marched::Wave { .. } => &self.wave,
+            Marched::Wave { lights: None, .. } => &self.wave,
+            Marched::Wave { lights: Some(_), .. } => &self.lit,
             Marched::Shadows { .. } => &self.shadows,
         };
         let pass = bind_state(rec.pass(Self::NAME, kernel), STATE_IN, io.state)
@@ -80,7 +87,12 @@ impl March {
             .buffer(MARCH_STOPS, &io.volumes.stops)
             .buffer(MARCH_STATE, &io.volumes.marches);
         let pass = match io.marched {
-            Marched::Wave { hits } => pass.buffer(TRACE_HITS, hits),
+            Marched::Wave { hits, lights: None } => pass.buffer(TRACE_HITS, hits),
+            Marched::Wave { hits, lights: Some(lights) } => pass
+                .buffer(TRACE_HITS, hits)
+                .buffer(SHADE_LIGHTS, lights)
+                .buffer(MARCH_LIGHT, &io.volumes.march_lights)
+                .buffer(MARCH_VISIBLE, &io.volumes.visible),
             Marched::Shadows { lit_rays, light_sums } => {
                 pass.buffer(WAVE_LIT_RAYS, lit_rays).buffer(WAVE_LIGHT_SUMS, light_sums)
             }

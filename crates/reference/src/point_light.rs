@@ -1,0 +1,46 @@
+//! Twin of `point_rays` and `point_lights`: how much of each light reaches the points of lit volumes.
+
+use crate::Reference;
+use crate::camera_rays::Ray;
+use crate::grid::Grid;
+use crate::grid_trace::grid_trace;
+use crate::isosurface::blocks;
+use crate::light::sample_light;
+use crate::media::Media;
+use crate::real::{Real, V3};
+use crate::volume::march;
+use kernels::layout::{NONE, VOLUME_EMITS, VOLUME_LIGHTS};
+use plan::Plan;
+use rayon::prelude::*;
+
+/// Of each light, of the points of all volumes; none where no volume is lit.
+pub fn point_lights<R: Real>(
+    reference: &Reference<R>,
+    plan: &Plan,
+) -> Vec<[R; VOLUME_LIGHTS as usize]> {
+    let volumes = &plan.volumes;
+    if !volumes.any_lit() {
+        return Vec::new();
+    }
+    let grid = Grid::<R>::from(&reference.grid);
+    let mut visible = vec![[R::of(0.0); VOLUME_LIGHTS as usize]; volumes.points.len()];
+    for (info, range) in volumes.point_ranges().filter(|(info, _)| info.shading != VOLUME_EMITS) {
+        let media = Media::of(&[info.object]);
+        visible[range.clone()].par_iter_mut().zip(&volumes.points[range]).for_each(
+            |(of, point)| {
+                let x = V3::of_f32(point.position);
+                for (of_light, light) in of.iter_mut().zip(&plan.lights) {
+                    let sample = sample_light(light, x, [R::of(0.5); 2]);
+                    let mut ray = Ray::new(x, sample.towards, &grid, NONE);
+                    ray.passed = info.object;
+                    ray.hit_t = sample.distance;
+                    grid_trace(&mut ray, &grid, &reference.lists, &reference.polynomials, true);
+                    if ray.hit_slot == NONE && !blocks(&ray, ray.hit_t, volumes) {
+                        *of_light = march(&ray, ray.hit_t, &media, volumes, None).transmittance;
+                    }
+                }
+            },
+        );
+    }
+    visible
+}

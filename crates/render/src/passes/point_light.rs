@@ -1,0 +1,80 @@
+//! The passes `point_rays` and `point_lights`.
+
+use super::{bind_state, line, state_bindings};
+use crate::state::RayState;
+use crate::volumes::VolumeBuffers;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use kernels::layout::{
+    MARCH_POINTS, MARCH_VISIBLE, PointLightParams, SHADE_LIGHTS, STATE_IN, STATE_OUT, TRACE_INFO,
+    WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS,
+};
+use kernels::spirv;
+use std::sync::Arc;
+
+/// What the passes work on.
+#[derive(Clone, Copy)]
+pub(crate) struct PointLightIo<'a> {
+    pub shadows: &'a RayState,
+    pub volumes: &'a VolumeBuffers,
+    pub grid_info: &'a Buffer,
+    pub lights: &'a Buffer,
+    pub paths: &'a Buffer,
+    pub lit_rays: &'a Buffer,
+    pub light_sums: &'a Buffer,
+}
+
+/// How much of a light reaches the points of a volume: the rays towards it, and what came of them.
+pub(crate) struct PointLight {
+    rays: Kernel,
+    lights: Kernel,
+}
+
+impl PointLight {
+    pub const RAYS: &'static str = "point_rays";
+    pub const LIGHTS: &'static str = "point_lights";
+
+    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+        let params = size_of::<PointLightParams>();
+        let with = |state: u32, buffers: &[u32]| {
+            let mut bindings = state_bindings(state).to_vec();
+            bindings.extend(buffers.iter().map(|&binding| (binding, Binding::StorageBuffer)));
+            bindings
+        };
+        let rays = with(
+            STATE_OUT,
+            &[TRACE_INFO, SHADE_LIGHTS, MARCH_POINTS, WAVE_PATHS, WAVE_LIT_RAYS, WAVE_LIGHT_SUMS],
+        );
+        let lights = with(STATE_IN, &[WAVE_LIGHT_SUMS, MARCH_VISIBLE]);
+        Ok(Self {
+            rays: Kernel::new(device, Self::RAYS, &spirv::point_rays(), &rays, params)?,
+            lights: Kernel::new(device, Self::LIGHTS, &spirv::point_lights(), &lights, params)?,
+        })
+    }
+
+    /// Records the rays towards one light; the caller then swaps their state.
+    pub fn record_rays(&self, rec: &mut Recorder, io: PointLightIo<'_>, params: &PointLightParams) {
+        bind_state(rec.pass(Self::RAYS, &self.rays), STATE_OUT, &io.shadows.next)
+            .buffer(TRACE_INFO, io.grid_info)
+            .buffer(SHADE_LIGHTS, io.lights)
+            .buffer(MARCH_POINTS, &io.volumes.points)
+            .buffer(WAVE_PATHS, io.paths)
+            .buffer(WAVE_LIT_RAYS, io.lit_rays)
+            .buffer(WAVE_LIGHT_SUMS, io.light_sums)
+            .push(params)
+            .dispatch(line(params.count));
+    }
+
+    /// Records what came of them.
+    pub fn record_lights(
+        &self,
+        rec: &mut Recorder,
+        io: PointLightIo<'_>,
+        params: &PointLightParams,
+    ) {
+        bind_state(rec.pass(Self::LIGHTS, &self.lights), STATE_IN, &io.shadows.current)
+            .buffer(WAVE_LIGHT_SUMS, io.light_sums)
+            .buffer(MARCH_VISIBLE, &io.volumes.visible)
+            .push(params)
+            .dispatch(line(params.count));
+    }
+}

@@ -1,0 +1,264 @@
+// isosurface: where rays first meet a surface on which the scalar of a volume is one number, before the
+// surface of points that they met.
+//
+// reads   the ray state, volumes, their cells, points and lengths
+//         paths            whether a ray is inside of glass
+// writes  searches         where each ray goes on in the next pass
+//         hits, the ray state    of rays that met one: the hit, and the slot that stands for it
+//         live             how many rays are not done
+// runs    one invocation per ray of the wave; dispatched until none lives
+// twin    crates/reference/src/isosurface.rs
+//
+// With SHADOWS, rays towards a light, which any isosurface blocks.
+//
+// The scalar is taken at the midpoints of steps and at the end of the way. Where it passes the number
+// between two samples, a few turns of regula falsi (Illinois) close in on the place, and the scalar's
+// gradient there is the normal. A pass can end after any row of cells or any 64 points of one.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define STATE_READS
+#define STATE_WRITES
+#include "layout.glsl"
+#include "math.glsl"
+#include "volume.glsl"
+#include "state.glsl"
+#include "index.glsl"
+
+layout(local_size_x = LINE_GROUP) in;
+layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
+layout(std430, binding = WAVE_PATHS) buffer Paths { Path paths[]; };
+layout(std430, binding = ISO_SEARCHES) buffer Searches { IsoSearch searches[]; };
+#ifdef SHADOWS
+layout(std430, binding = WAVE_LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
+#else
+layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
+#endif
+layout(push_constant) uniform Push { MarchParams params; };
+
+#define AT_ONCE 64u // points of a row
+#define MOST_SAMPLES 16777216.0 // floats count no farther
+#define TURNS 8u
+#define SKIPPED 0u // looked
+#define LOOKED 1u
+#define TO_LOOK 2u
+#define UNKNOWN 0u // sides
+#define BELOW 1u
+#define ABOVE 2u
+#define NEW 0u // states
+#define STEPPING 1u
+#define CLOSING_IN 2u
+#define TURNING 3u // towards the viewer, at the place
+#define DONE 4u
+
+bool is_inside(uint path, uint object) {
+    bool found = false;
+    for (uint i = 0u; i < paths[path].media_count; ++i) {
+        found = found || bitfieldExtract(paths[path].media[i / 2u], 16 * int(i & 1u), 16) == object;
+    }
+    return found;
+}
+
+// What may be seen from x.
+uint seen_from(VolumeInfo volume, vec3 x) {
+    vec3 cells_off = (x - volume.grid.origin) * volume.grid.inverse_edge;
+    bool inside = all(greaterThanEqual(cells_off, vec3(0.0))) && all(lessThan(cells_off, vec3(volume.grid.resolution)));
+    return inside ? volume_cells[volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))].counts : CELL_NOTHING;
+}
+
+// The side of a place that need not be looked at, unless it tells where the surface is: where there are no
+// points a sum is 0, a mean is none.
+uint side_of(VolumeInfo volume, uint seen) {
+    uint nothing = volume.kernel == VOLUME_SHEPARD ? UNKNOWN : BELOW;
+    return seen == CELL_ABOVE ? ABOVE : (seen == CELL_BELOW ? BELOW : nothing);
+}
+
+float sample_at(vec2 way, uint place) {
+    return min(way.x + (float(place) + 0.5) * params.step, way.y);
+}
+
+// Between two places on either side: on the line between their values, or in the middle.
+float between(IsoSearch search) {
+    float span = search.value_low - search.value_high;
+    bool apart = search.value_low * search.value_high < 0.0;
+    float part = apart ? search.value_low / (apart ? span : 1.0) : 0.5;
+    return search.low + part * (search.high - search.low);
+}
+
+IsoSearch without_sums(IsoSearch search) {
+    search.pull = vec3(0.0);
+    search.weights_pull = vec3(0.0);
+    search.numerator = 0.0;
+    search.denominator = 0.0;
+    search.row = 0u;
+    search.cursor = 0u;
+    return search;
+}
+
+void main() {
+    uint at = list_index();
+    if (at >= params.ray_count) return;
+    IsoSearch search = searches[at];
+    if (search.state == DONE) return;
+    Ray ray = load_ray(at);
+#ifdef SHADOWS
+    bool begins = ray.hit_slot == NONE && any(greaterThan(light_sums[at].arriving, vec3(0.0)));
+#else
+    bool begins = paths[at].pixel != NONE;
+#endif
+    if (!begins) return;
+    vec3 o = ray.origin, d = ray.direction;
+#ifdef SHADOWS
+    float end = ray.hit_t;
+#else
+    float end = ray.hit_slot != NONE ? hits[at].t : NO_HIT;
+#endif
+    bool blocked = false;
+    uint work_left = params.work;
+
+    while (search.volume < params.volume_count && work_left > 0u) {
+        VolumeInfo volume = volumes[search.volume];
+        vec2 way = within_box(volume.grid.origin, volume.high, o, d);
+        way.y = min(way.y, end);
+        bool counts = volume.mode == VOLUME_ISOSURFACE && way.x < way.y;
+        float steps = max(-floor(0.5 - (way.y - way.x) / params.step), 0.0);
+        uint samples = counts ? uint(min(steps, MOST_SAMPLES)) + 1u : 0u;
+        if (search.state == NEW) {
+            bool inside = volume.refracts != 0u && is_inside(at, volume.object);
+#ifdef SHADOWS
+            search.side = UNKNOWN;
+#else
+            search.side = volume.refracts != 0u ? (inside ? ABOVE : BELOW) : UNKNOWN;
+#endif
+            search.low = way.x;
+            search.value_low = 0.0;
+            search.place = 0u;
+            search.looked = LOOKED;
+            search.state = STEPPING;
+        }
+        // Samples whose side is known, and is that of the one before or none, cost a look.
+        bool skips = search.state == STEPPING && search.row == 0u && search.cursor == 0u && search.looked != TO_LOOK;
+        while (skips && search.place < samples && work_left > 0u) {
+            float t = sample_at(way, search.place);
+            uint seen = seen_from(volume, o + t * d);
+            uint side = side_of(volume, seen);
+            bool same = side == search.side || side == UNKNOWN || search.side == UNKNOWN;
+            skips = seen != CELL_LOOK && same;
+            search.side = skips ? side : search.side;
+            search.low = skips ? t : search.low;
+            search.looked = skips ? SKIPPED : search.looked;
+            search.place += skips ? 1u : 0u;
+            --work_left;
+        }
+        bool stepping = search.state == STEPPING;
+        bool sampling = !stepping || search.place < samples;
+        bool turning = search.state == TURNING;
+        float t = stepping ? sample_at(way, search.place) : search.here;
+        vec3 x = o + t * d;
+        float reach = sqrt(volume.square_radius);
+        uvec3 low, high;
+        cells_around(volume.grid, x, reach, low, high);
+        uint rows = sampling ? (high.y - low.y + 1u) * (high.z - low.z + 1u) : 0u;
+        bool particles = volume.kernel == VOLUME_SPH;
+
+        while (search.row < rows && work_left > 0u) {
+            uvec2 range = row_points(volume, low, high, search.row);
+            uint first = range.x + search.cursor;
+            uint count = min(range.y - first, AT_ONCE);
+            uint gaussians = particles ? 0u : count;
+            for (uint i = 0u; i < gaussians; ++i) {
+                VolumePoint point = volume_points[first + i];
+                vec3 y = point.position - x;
+                float square = dot3(y, y);
+                float weight =
+                    square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
+                search.numerator += weight * point.scalar;
+                search.denominator += weight;
+                search.pull += (weight * point.scalar) * y;
+                search.weights_pull += weight * y;
+            }
+            uint splines = particles ? count : 0u;
+            for (uint i = 0u; i < splines; ++i) {
+                VolumePoint point = volume_points[first + i];
+                vec3 y = point.position - x;
+                float inverse_length = inverse_lengths[first + i];
+                float q = sqrt(dot3(y, y)) * inverse_length;
+                float weight = spline(q);
+                search.numerator += weight * point.scalar;
+                search.denominator += weight;
+                search.pull += (spline_pull(q, inverse_length) * point.scalar) * y;
+            }
+            bool row_ends = first + count >= range.y;
+            search.cursor = row_ends ? 0u : search.cursor + count;
+            search.row += row_ends ? 1u : 0u;
+            work_left -= min(work_left, count + 2u);
+        }
+        work_left -= min(work_left, 4u);
+
+        if (search.row >= rows) {
+            bool reached = search.denominator > 0.0;
+            bool mean = volume.kernel == VOLUME_SHEPARD;
+            float scalar = mean && reached ? search.numerator / (reached ? search.denominator : 1.0) : search.numerator;
+            float value = scalar - volume.iso;
+            uint side = mean && !reached ? UNKNOWN : (value > 0.0 ? ABOVE : BELOW);
+            if (!sampling) {
+                ++search.volume;
+                search.state = NEW;
+            } else if (stepping && search.looked == SKIPPED && side != UNKNOWN && search.side != UNKNOWN && side != search.side) {
+                search.looked = TO_LOOK; // at the place before, first
+                search.side = UNKNOWN;
+                --search.place;
+            } else if (stepping) {
+                bool crosses = side != UNKNOWN && search.side != UNKNOWN && side != search.side;
+                search.looked = LOOKED;
+                search.high = t;
+                search.value_high = value;
+                search.here = between(search);
+                search.low = crosses ? search.low : t;
+                search.value_low = crosses ? search.value_low : (side == UNKNOWN ? 0.0 : value);
+                search.side = crosses ? search.side : side;
+                search.place = crosses ? 0u : search.place + 1u;
+                search.state = crosses ? CLOSING_IN : STEPPING;
+#ifdef SHADOWS
+                blocked = blocked || crosses;
+                search.volume = crosses ? params.volume_count : search.volume;
+#endif
+            } else if (!turning) {
+                bool before = side == UNKNOWN || side == search.side;
+                search.low = before ? t : search.low;
+                search.high = before ? search.high : t;
+                float kept_low = 0.5 * search.value_low, kept_high = 0.5 * search.value_high;
+                search.value_low = before ? (side == UNKNOWN ? 0.0 : value) : kept_low;
+                search.value_high = before ? kept_high : value;
+                ++search.place;
+                search.here = between(search);
+                search.state = search.place < TURNS ? CLOSING_IN : TURNING;
+            } else {
+#ifndef SHADOWS
+                vec3 gradient = gradient_of(volume, scalar, search.pull, search.weights_pull);
+                float square = dot3(gradient, gradient);
+                bool steep = square > 0.0;
+                vec3 normal = steep ? gradient / (steep ? sqrt(square) : 1.0) : d;
+                normal = dot3(normal, d) > 0.0 ? -normal : normal;
+                hits[at] = Hit(x, t, normal, HIT_ACCEPTED);
+                ray.hit_t = t;
+                ray.hit_slot = volume.slot;
+                end = t;
+                store_ray(at, ray);
+#endif
+                ++search.volume;
+                search.state = NEW;
+            }
+            search = without_sums(search);
+        }
+    }
+#ifdef SHADOWS
+    if (blocked) {
+        ray.hit_slot = volumes[0].slot; // any will do
+        store_ray(at, ray);
+    }
+#endif
+    bool done = search.volume >= params.volume_count;
+    search.state = done ? DONE : search.state;
+    searches[at] = search;
+    if (!done) atomicAdd(live, 1u);
+}

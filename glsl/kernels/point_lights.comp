@@ -1,0 +1,25 @@
+// point_lights: what of one light's reaches the points of a volume.
+//
+// reads   the shadow rays' state      as the rays towards the light left it
+//         light_sums       what the volumes on their ways left of it
+// writes  visible          of this light
+// runs    one invocation per point of a batch
+// twin    crates/reference/src/point_light.rs
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define STATE_READS
+#include "layout.glsl"
+#include "state.glsl"
+#include "index.glsl"
+
+layout(local_size_x = LINE_GROUP) in;
+layout(std430, binding = WAVE_LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
+layout(std430, binding = MARCH_VISIBLE) writeonly buffer Visible { float visible[]; };
+layout(push_constant) uniform Push { PointLightParams params; };
+
+void main() {
+    uint at = list_index();
+    if (at >= params.count) return;
+    bool blocked = load_ray(at).hit_slot != NONE;
+    visible[(params.first + at) * uint(VOLUME_LIGHTS) + params.light] = blocked ? 0.0 : light_sums[at].arriving.x;
+}

@@ -1,0 +1,42 @@
+// point_rays: the rays from the points of a volume towards one light.
+//
+// reads   points of volumes, lights, grid
+// writes  the shadow rays' state
+//         paths            inside of the volume's own object
+//         light_sums       1: all of the light
+//         lit_rays         each its own path
+// runs    one invocation per point of a batch
+// twin    crates/reference/src/point_light.rs
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define STATE_WRITES
+#include "layout.glsl"
+#include "math.glsl"
+#include "grid.glsl"
+#include "light.glsl"
+#include "state.glsl"
+#include "index.glsl"
+
+layout(local_size_x = LINE_GROUP) in;
+layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
+layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
+layout(std430, binding = MARCH_POINTS) readonly buffer VolumePoints { VolumePoint volume_points[]; };
+layout(std430, binding = WAVE_PATHS) writeonly buffer Paths { Path paths[]; };
+layout(std430, binding = WAVE_LIT_RAYS) writeonly buffer LitRays { uvec2 lit_rays[]; };
+layout(std430, binding = WAVE_LIGHT_SUMS) writeonly buffer LightSums { LightSum light_sums[]; };
+layout(push_constant) uniform Push { PointLightParams params; };
+
+void main() {
+    uint at = list_index();
+    if (at >= params.count) return;
+    vec3 x = volume_points[params.first + at].position;
+    LightSample light = sample_light(lights[params.light], x, vec2(0.5));
+    Ray ray = new_ray(x, light.towards, enter_grid(grid, x, light.towards), NONE);
+    ray.hit_t = light.distance;
+    store_ray(at, ray);
+    paths[at].pixel = 0u;
+    paths[at].media_count = 1u;
+    paths[at].media[0] = params.object;
+    lit_rays[at] = uvec2(at, NONE);
+    light_sums[at] = LightSum(vec3(0.0), 0u, vec3(1.0), 0u);
+}
