@@ -38,9 +38,12 @@ layout(push_constant) uniform Push { MarchParams params; };
 #define AT_ONCE 64u // points of a row
 #define MOST_SAMPLES 16777216.0 // floats count no farther
 #define TURNS 8u
+#define ON_IT -1e-20 // the value of a place on the surface: 0 is not known
 #define SKIPPED 0u // looked
 #define LOOKED 1u
 #define TO_LOOK 2u
+#define MOVED_LOW 3u // the end that was moved by the last turn
+#define MOVED_HIGH 4u
 #define UNKNOWN 0u // sides
 #define BELOW 1u
 #define ABOVE 2u
@@ -198,7 +201,8 @@ void main() {
             bool reached = search.denominator > 0.0;
             bool mean = volume.kernel == VOLUME_SHEPARD;
             float scalar = mean && reached ? search.numerator / (reached ? search.denominator : 1.0) : search.numerator;
-            float value = scalar - volume.iso;
+            float exact = scalar - volume.iso;
+            float value = exact == 0.0 ? ON_IT : exact;
             uint side = mean && !reached ? UNKNOWN : (value > 0.0 ? ABOVE : BELOW);
             if (!sampling) {
                 ++search.volume;
@@ -223,10 +227,14 @@ void main() {
                 search.volume = crosses ? params.volume_count : search.volume;
 #endif
             } else if (!turning) {
+                // Of an end that stays where it is for two turns, half the value counts (Illinois).
                 bool before = side == UNKNOWN || side == search.side;
+                bool again = search.looked == (before ? MOVED_LOW : MOVED_HIGH);
+                float share = again ? 0.5 : 1.0;
                 search.low = before ? t : search.low;
                 search.high = before ? search.high : t;
-                float kept_low = 0.5 * search.value_low, kept_high = 0.5 * search.value_high;
+                float kept_low = share * search.value_low, kept_high = share * search.value_high;
+                search.looked = before ? MOVED_LOW : MOVED_HIGH;
                 search.value_low = before ? (side == UNKNOWN ? 0.0 : value) : kept_low;
                 search.value_high = before ? kept_high : value;
                 ++search.place;

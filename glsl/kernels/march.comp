@@ -113,15 +113,17 @@ March shown(VolumeInfo volume, March march) {
 #ifdef LIT
 #define INVERSE_PI 0.318309886
 #define INVERSE_FOUR_PI 0.0795774715
-#define FLATTEST 1e-6 // a gradient, by its terms
+#define FLATTEST 1e-5 // a gradient over a point's reach, by the scalar: less is rounding
 
 // What of the light at x goes towards the viewer, by the colour there. By Lambert's law for a surface across
 // the gradient, or evenly to all sides, as is the mean of that over all surfaces.
-vec3 scattered(VolumeInfo volume, float scalar, float weights, MarchLight sums, vec3 x, vec3 d) {
+vec3 scattered(VolumeInfo volume, float numerator, float weights, MarchLight sums, vec3 x, vec3 d) {
+    float scalar = volume.kernel == VOLUME_SHEPARD ? numerator / weights : numerator;
     vec3 gradient = gradient_of(volume, scalar, sums.pull, sums.weights_pull);
     float square = dot3(gradient, gradient);
-    float terms = dot3(sums.pull, sums.pull) + (scalar * scalar) * dot3(sums.weights_pull, sums.weights_pull);
-    bool steep = volume.shading == VOLUME_GRADIENT && square > (FLATTEST * FLATTEST) * terms;
+    float reach = volume.square_radius;
+    float most = (numerator * numerator) * (volume.kernel == VOLUME_SPH ? 1.0 / reach : reach);
+    bool steep = volume.shading == VOLUME_GRADIENT && square > (FLATTEST * FLATTEST) * most;
     vec3 normal = steep ? gradient / (steep ? sqrt(square) : 1.0) : vec3(0.0);
     normal = dot3(normal, d) > 0.0 ? -normal : normal;
     vec3 sum = vec3(0.0);
@@ -251,7 +253,7 @@ void main() {
 #ifdef LIT
             uint lit = extinction > 0.0 && volume.shading != VOLUME_EMITS ? 1u : 0u;
             for (uint i = 0u; i < lit; ++i) {
-                color *= scattered(volume, scalar, march.denominator, sums, at_place.x, ray.direction);
+                color *= scattered(volume, march.numerator, march.denominator, sums, at_place.x, ray.direction);
             }
             sums = MarchLight(vec3(0.0), 0u, vec3(0.0), 0u, vec4(0.0));
 #endif

@@ -458,7 +458,7 @@ struct IsoSearch {       // 80 bytes
     uint row;            // 64  of cells around the place
     uint cursor;         // 68  points of the row that are done
     uint side;           // 72  of `low`: 0 not known, 1 below, 2 above
-    uint looked;         // 76  whether it was looked at, or is known from its cell
+    uint looked;         // 76  whether it was looked at, or is known from its cell; then which end moved
 };
 
 struct MarchParams {     // 20 bytes

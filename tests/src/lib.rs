@@ -108,7 +108,10 @@ pub fn render_twin(plan: &Plan) -> Rendered {
     let reference = Reference::<f32>::new(plan, &Unwatched).expect("nobody interrupts");
     let picture: Picture = reference.frame(plan, &Unwatched).expect("nobody interrupts");
     Rendered {
-        polynomials: reference.polynomials.iter().map(|&p| p.into()).collect(),
+        // Behind those of the points come stand-ins of isosurfaces.
+        polynomials: (reference.polynomials.iter().take(plan.cloud.points.len()))
+            .map(|&p| p.into())
+            .collect(),
         cells: reference.lists.cells,
         slots: reference.lists.slots,
         passes: 1,

@@ -911,7 +911,7 @@ pub struct IsoSearch {
     pub cursor: u32,
     /// Of `low`: 0 not known, 1 below, 2 above.
     pub side: u32,
-    /// Whether it was looked at, or is known from its cell.
+    /// Whether it was looked at, or is known from its cell; then which end moved.
     pub looked: u32,
 }
 gpu_layout!(IsoSearch, 80, {

@@ -14,6 +14,8 @@ use plan::Volumes;
 
 /// Turns of regula falsi.
 const TURNS: u32 = 8;
+/// The value of a place on the surface: 0 is not known.
+const ON_IT: f32 = -1e-20;
 
 /// On which side of an isosurface a place is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,7 +46,8 @@ impl<R: Real> Search<'_, R> {
 
     fn sample(&self, t: R) -> Sample<R> {
         let sums = Sums::at(self.volume, self.volumes, self.place(t), None);
-        let value = sums.scalar(self.volume) - R::of_f32(self.volume.iso);
+        let exact = sums.scalar(self.volume) - R::of_f32(self.volume.iso);
+        let value = if exact == R::of(0.0) { R::of_f32(ON_IT) } else { exact };
         let known = self.volume.kernel != VOLUME_SHEPARD || sums.reached();
         let side = if value > R::of(0.0) { Side::Above } else { Side::Below };
         Sample { t, value: if known { value } else { R::of(0.0) }, side: known.then_some(side) }
@@ -77,16 +80,20 @@ impl<R: Real> Search<'_, R> {
 
     /// Closes in on the surface between two samples.
     fn close_in(&self, [mut low, mut high]: [Sample<R>; 2]) -> R {
-        let half = R::of(0.5);
+        // Of an end that stays where it is for two turns, half the value counts (Illinois).
+        let mut moved_low = None;
         for _ in 0..TURNS {
             let here = self.sample(between(&low, &high));
-            if here.side.is_none() || here.side == low.side {
+            let before = here.side.is_none() || here.side == low.side;
+            let share = R::of(if moved_low == Some(before) { 0.5 } else { 1.0 });
+            if before {
                 low = Sample { side: low.side, ..here };
-                high.value = half * high.value;
+                high.value = share * high.value;
             } else {
                 high = here;
-                low.value = half * low.value;
+                low.value = share * low.value;
             }
+            moved_low = Some(before);
         }
         between(&low, &high)
     }

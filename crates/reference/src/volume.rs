@@ -16,8 +16,8 @@ const FEWEST: f64 = 1e-30;
 pub(crate) const MOST_SAMPLES: f64 = 16_777_216.0;
 const INVERSE_PI: f32 = 0.318_309_886;
 const INVERSE_FOUR_PI: f32 = 0.079_577_471_5;
-/// A gradient, by its terms.
-const FLATTEST: f32 = 1e-6;
+/// A gradient over a point's reach, by the scalar: less is rounding.
+const FLATTEST: f32 = 1e-5;
 
 /// What volumes do to a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -143,13 +143,13 @@ impl<R: Real> Sums<R> {
     /// What of the light at x goes towards the viewer, by the colour there.
     fn scattered(&self, volume: &VolumeInfo, x: V3<R>, d: V3<R>, lights: &[Light]) -> V3<R> {
         let zero = R::of(0.0);
-        let scalar = self.scalar(volume);
         let gradient = self.gradient(volume);
         let square = gradient.dot(gradient);
-        let terms =
-            self.pull.dot(self.pull) + (scalar * scalar) * self.weights_pull.dot(self.weights_pull);
+        let reach = R::of_f32(volume.square_radius);
+        let scale = if volume.kernel == VOLUME_SPH { R::of(1.0) / reach } else { reach };
+        let most = (self.numerator * self.numerator) * scale;
         let flattest = R::of_f32(FLATTEST);
-        let steep = volume.shading == VOLUME_GRADIENT && square > (flattest * flattest) * terms;
+        let steep = volume.shading == VOLUME_GRADIENT && square > (flattest * flattest) * most;
         let normal = if steep { gradient.over(square.sqrt()) } else { V3::splat(zero) };
         let normal = if normal.dot(d) > zero { -normal } else { normal };
         let mut sum = V3::splat(zero);
