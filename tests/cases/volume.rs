@@ -156,6 +156,31 @@ fn a_random_cloud_agrees_with_a_direct_evaluation_of_equation_3() {
     assert!(film.color.iter().any(|c| c[3] > 0.9), "nothing was seen");
 }
 
+/// The ray ends where the transmittance is under 1e-30, which is 0: the brightest emission that a scene may state,
+/// behind that, changes no bit.
+#[test]
+fn nothing_behind_an_opaque_volume_changes_a_bit() {
+    let object = |z: f64, stops: &str| {
+        format!(
+            "[[objects]]\npoints = \"c.ply\"\ntransform.translate = [0.0, 0.0, {z}]\n[objects.volume]\n\
+             scalar = \"s\"\nradius = 0.4\nstep = 0.02\ntransfer = [{{ value = 0.0, {stops} }}]\n"
+        )
+    };
+    let wall = object(0.0, "color = [1e-6, 0.0, 0.0], extinction = 60.0");
+    let sun = object(-3.0, "color = [1e15, 1e15, 1e15], extinction = 1.0");
+    let view = "[image]\nsize = [16, 16]\n[camera]\neye = [0.0, 0.0, 4.0]\ntarget = [0.0, 0.0, 0.0]\n\
+                vertical_fov = 20.0\n";
+    let set = with_attribute(set_of(cloud(2_000).positions), "s", |_| 1.0);
+    let bench = Bench::open();
+    let both =
+        bench.render(&plan_of(&(view.to_owned() + &wall + &sun), &[set.clone(), set.clone()]));
+    // As far away, so that both scenes are centred alike, and thin.
+    let dark = sun.replace("extinction = 1.0", "extinction = 0.0");
+    let alone = bench.render(&plan_of(&(view.to_owned() + &wall + &dark), &[set.clone(), set]));
+    assert_same_film("behind", &both.film, &alone.film);
+    assert!(both.film.color.iter().all(|color| color[0] > 0.0 && color[3] == 1.0), "a wall");
+}
+
 /// Midpoints are of second order where extinction is smooth along the ray: here the field fades at the faces of the
 /// cube to values that are not seen, and the weights are e^-8 at the radius. Where a cloud ends at once, as it does
 /// by Eq. 3 a radius beyond its last points, one step counts or not: first order.
