@@ -2,6 +2,7 @@
 // paper).
 //
 // reads   the ray state, hits      where each ray begins and ends
+//         objects          what the medium that a ray is in absorbs
 //         volumes, their cells, points, lengths and stops
 // writes  march            where each ray goes on in the next pass
 //         paths            what the volumes emit towards the camera, and what they leave of the throughput
@@ -39,6 +40,8 @@ layout(std430, binding = WAVE_LIT_RAYS) readonly buffer LitRays { uvec2 lit_rays
 layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
 #else
 layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
+layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
+#include "media.glsl"
 #endif
 #ifdef LIT
 layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
@@ -81,12 +84,14 @@ vec2 way_through(Ray ray, uint path, float end) {
 struct Sample {
     vec3 x;
     float length_of_step;
+    float t;
 };
 
 Sample sample_of(Ray ray, vec2 way, uint place) {
     float begin = float(place) * params.step;
     float length_of_step = min(params.step, (way.y - way.x) - begin);
-    return Sample(ray.origin + (way.x + (begin + 0.5 * length_of_step)) * ray.direction, length_of_step);
+    float t = way.x + (begin + 0.5 * length_of_step);
+    return Sample(ray.origin + t * ray.direction, length_of_step, t);
 }
 
 // Whether x is in the volume's grid, and anything may be seen from its cell.
@@ -170,6 +175,9 @@ void main() {
         march.transmittance = 1.0;
         march.state = 1u;
     }
+#ifndef SHADOWS
+    uint medium = paths[at].media_count > 0u ? medium_without(at, NONE) : NONE;
+#endif
     vec2 way = way_through(ray, path, end);
     float span = way.y - way.x;
     uint samples = uint(min(max(-floor(-(span / params.step)), 0.0), MOST_SAMPLES));
@@ -267,6 +275,10 @@ void main() {
             bool emits = last && march.sample_extinction > 0.0;
             float through = exp_negative(-(march.sample_extinction * at_place.length_of_step));
             vec3 mean = march.sample_color / (emits ? march.sample_extinction : 1.0);
+#ifndef SHADOWS
+            uint absorbs = emits && medium != NONE ? 1u : 0u;
+            for (uint i = 0u; i < absorbs; ++i) mean *= transmittance(medium, at_place.t);
+#endif
             march.color += emits ? (march.transmittance * (1.0 - through)) * mean : vec3(0.0);
             march.transmittance *= emits ? through : 1.0;
             march.sample_color = last ? vec3(0.0) : march.sample_color;

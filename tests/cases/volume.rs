@@ -1,6 +1,7 @@
 //! Volumes (\[T\] §6): Eq. 3 against its definition, Beer and Lambert's law, and the twin's bits.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
+use film::Film;
 use harness::{
     Bench, assert_same_bits, assert_same_film, fibonacci_sphere, grid_points, plan_of, random,
     render_twin, set_of, shared_data, with_attribute,
@@ -208,10 +209,8 @@ fn the_picture_converges_with_the_square_of_the_step() {
     assert!(errors[0] / errors[1] > 3.0 && errors[1] / errors[2] > 3.0, "{errors:?}");
 }
 
-/// A glass ball (1.33) full of constant fog: Beer and Lambert along the refracted chord 2 cos θt, within
-/// 1.5e-2.
-#[test]
-fn fog_in_a_glass_ball_obeys_beer_and_lambert_along_the_refracted_chord() {
+/// A ball of glass (1.33) full of points that all have the value 1.
+fn fog_ball() -> PointSet {
     let mut seed = 5;
     let mut positions = fibonacci_sphere(10_000);
     while positions.len() < 20_000 {
@@ -221,47 +220,77 @@ fn fog_in_a_glass_ball_obeys_beer_and_lambert_along_the_refracted_chord() {
         }
     }
     let is_skin = |p: [f64; 3]| f64::from(p.iter().map(|x| x * x).sum::<f64>() > 0.99);
-    let set = with_attribute(with_attribute(set_of(positions), "s", |_| 1.0), "skin", is_skin);
-    let text = format!(
+    with_attribute(with_attribute(set_of(positions), "s", |_| 1.0), "skin", is_skin)
+}
+
+fn fog_ball_scene(background: f64, color: [f64; 3], absorption: [f64; 3]) -> String {
+    format!(
         "[image]\nsize = [96, 72]\n{CAMERA}
 [background]
-color = [1.0, 1.0, 1.0]
+color = [{background}, {background}, {background}]
 [[objects]]
 points = \"fog.ply\"
-material = {{ kind = \"glass\", ior = 1.33 }}
+material = {{ kind = \"glass\", ior = 1.33, absorption = {absorption:?} }}
 [objects.volume]
 scalar = \"s\"
 radius = 0.2
 step = 0.01
 boundary = \"skin\"
-transfer = [{{ value = 1.0, color = [0.0, 0.0, 0.0], extinction = 0.8 }}]
+transfer = [{{ value = 1.0, color = {color:?}, extinction = 0.8 }}]
 "
-    );
-    let plan = plan_of(&text, &[set]);
+    )
+}
+
+/// The refracted chord 2 cos θt of a pixel that shows the ball within 0.93 of its radius.
+fn refracted_chord(film: &Film, pixel: usize) -> Option<f64> {
+    let p = film.position[pixel].map(f64::from);
+    let d: Vec<f64> = (0..3).map(|a| p[a] - EYE[a]).collect();
+    let length = d.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let cosine = -(0..3).map(|a| p[a] * d[a] / length).sum::<f64>();
+    let sine = (1.0 - cosine * cosine).sqrt();
+    let seen = film.object[pixel] >= 0.0 && sine < 0.93;
+    seen.then(|| 2.0 * (1.0 - (sine / 1.33).powi(2)).sqrt())
+}
+
+/// A glass ball (1.33) full of constant fog: Beer and Lambert along the refracted chord, within 1.5e-2.
+#[test]
+fn fog_in_a_glass_ball_obeys_beer_and_lambert_along_the_refracted_chord() {
+    let plan = plan_of(&fog_ball_scene(1.0, [0.0; 3], [0.0; 3]), &[fog_ball()]);
     let on_device = Bench::open().render(&plan);
     assert_same_bits("fog", &on_device, &render_twin(&plan));
-    let eye = [0.3, 0.4, 4.0];
+    let film = &on_device.film;
     let mut errors = Vec::new();
-    for (at, color) in on_device.film.color.iter().enumerate() {
-        if on_device.film.object[at] < 0.0 {
-            assert_eq!(color[0], 1.0, "the background beside the ball");
-            continue;
+    for (at, color) in film.color.iter().enumerate() {
+        assert!(film.object[at] >= 0.0 || color[0] == 1.0, "the background beside the ball");
+        if let Some(chord) = refracted_chord(film, at) {
+            errors.push((f64::from(color[1]) - (-0.8 * chord).exp()).abs());
         }
-        let p = on_device.film.position[at].map(f64::from);
-        let d: Vec<f64> = (0..3).map(|a| p[a] - eye[a]).collect();
-        let length = d.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let cosine = -(0..3).map(|a| p[a] * d[a] / length).sum::<f64>();
-        // Within 0.93 of the radius.
-        let sine = (1.0 - cosine * cosine).sqrt();
-        if sine > 0.93 {
-            continue;
-        }
-        let chord = 2.0 * (1.0 - (sine / 1.33).powi(2)).sqrt();
-        errors.push((f64::from(color[1]) - (-0.8 * chord).exp()).abs());
     }
     let worst = errors.iter().copied().fold(0.0, f64::max);
     println!("fog in glass: worst of {} pixels {worst:.1e}, limit 1.5e-2", errors.len());
     assert!(errors.len() > 1_000 && worst < 1.5e-2, "{worst}");
+}
+
+/// Glowing fog in glass that absorbs: L = c σ/(σ + a) (1 − e^(−(σ + a)ℓ)) along the chord ℓ, channel by channel.
+#[test]
+fn glass_dims_what_the_fog_inside_of_it_emits() {
+    let (glow, absorption) = ([1.0, 0.6, 0.3], [1.5, 0.5, 0.0]);
+    let plan = plan_of(&fog_ball_scene(0.0, glow, absorption), &[fog_ball()]);
+    let on_device = Bench::open().render(&plan);
+    assert_same_bits("glowing fog", &on_device, &render_twin(&plan));
+    let film = &on_device.film;
+    let mut worst = 0.0f64;
+    for (at, color) in film.color.iter().enumerate() {
+        let Some(chord) = refracted_chord(film, at) else { continue };
+        for channel in 0..3 {
+            let both = 0.8 + absorption[channel];
+            let expected = glow[channel] * 0.8 / both * (1.0 - (-both * chord).exp());
+            worst = worst.max((f64::from(color[channel]) - expected).abs());
+        }
+    }
+    println!("glowing fog: worst {worst:.1e}");
+    // Midpoints of steps of 0.01: (σ a) 0.01²/24 of each term, and the glass as above.
+    assert!(worst > 0.0 && worst < 1e-4, "{worst}");
 }
 
 /// Two volumes that overlap, a surface between them that throws a shadow and gets one from them, glass in

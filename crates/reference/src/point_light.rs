@@ -36,7 +36,8 @@ pub fn point_lights<R: Real>(
                     ray.hit_t = sample.distance;
                     grid_trace(&mut ray, &grid, &reference.lists, &reference.polynomials, true);
                     if ray.hit_slot == NONE && !blocks(&ray, ray.hit_t, volumes) {
-                        *of_light = march(&ray, ray.hit_t, &media, volumes, None).transmittance;
+                        *of_light = march(&ray, ray.hit_t, &media, volumes, &plan.objects, None)
+                            .transmittance;
                     }
                 }
             },

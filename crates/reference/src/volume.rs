@@ -3,11 +3,11 @@
 use crate::camera_rays::Ray;
 use crate::grid::{Ball, Grid, within_box};
 use crate::light::sample_light;
-use crate::media::Media;
+use crate::media::{Media, transmittance};
 use crate::real::{NO_HIT, Real, V3};
 use kernels::layout::{
-    CELL_NOTHING, Light, VOLUME_AVERAGE, VOLUME_EMITS, VOLUME_GRADIENT, VOLUME_ISOSURFACE,
-    VOLUME_LIGHTS, VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo,
+    CELL_NOTHING, Light, ObjectInfo, VOLUME_AVERAGE, VOLUME_EMITS, VOLUME_GRADIENT,
+    VOLUME_ISOSURFACE, VOLUME_LIGHTS, VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo,
 };
 use plan::Volumes;
 
@@ -239,6 +239,7 @@ pub fn march<R: Real>(
     end: R,
     media: &Media,
     volumes: &Volumes,
+    objects: &[ObjectInfo],
     lighting: Option<Lighting<'_, R>>,
 ) -> March<R> {
     let (zero, one) = (R::of(0.0), R::of(1.0));
@@ -257,6 +258,7 @@ pub fn march<R: Real>(
             to = to.max(leave);
         }
     }
+    let medium = media.medium(objects);
     let step = R::of_f32(volumes.step);
     let span = to.min(end) - from;
     let samples = (-(-(span / step)).floor()).max(zero).min(R::of(MOST_SAMPLES)).to_u32();
@@ -265,7 +267,8 @@ pub fn march<R: Real>(
     for place in 0..samples {
         let begin = R::of_u32(place) * step;
         let length = step.min(span - begin);
-        let x = ray.origin + ray.direction.times(from + (begin + R::of(0.5) * length));
+        let t = from + (begin + R::of(0.5) * length);
+        let x = ray.origin + ray.direction.times(t);
         let (mut color, mut extinction) = (V3::splat(zero), zero);
         for volume in &taking_part {
             let Some(scalar) = scalar_at(volume, volumes, x) else { continue };
@@ -289,7 +292,10 @@ pub fn march<R: Real>(
         }
         if extinction > zero {
             let through = (-(extinction * length)).exp_negative();
-            let emitted = color.over(extinction).times(march.transmittance * (one - through));
+            let color = color.over(extinction);
+            let color =
+                if medium.is_some() { color * transmittance(medium, t, objects) } else { color };
+            let emitted = color.times(march.transmittance * (one - through));
             march.color = march.color + emitted;
             march.transmittance = march.transmittance * through;
         }

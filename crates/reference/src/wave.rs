@@ -172,7 +172,7 @@ impl<R: Real> PixelTrace<'_, R> {
         lighting: Option<Lighting<'_, R>>,
     ) -> Option<March<R>> {
         let volumes = &self.plan.volumes;
-        volumes.any_marched().then(|| march(ray, end, media, volumes, lighting))
+        volumes.any_marched().then(|| march(ray, end, media, volumes, &self.plan.objects, lighting))
     }
 
     fn lighting(&self) -> Option<Lighting<'_, R>> {

@@ -27,7 +27,7 @@ impl Renderer {
             paths: self.wave.paths(),
             live: &self.live,
             marched: match shadows {
-                false => Marched::Wave { hits: &self.hits, lights },
+                false => Marched::Wave { hits: &self.hits, objects: &self.objects, lights },
                 true => Marched::Shadows {
                     lit_rays: self.wave.lit_rays(),
                     light_sums: self.wave.light_sums(),

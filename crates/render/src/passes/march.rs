@@ -6,8 +6,8 @@ use crate::volumes::VolumeBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
     MARCH_CELLS, MARCH_LENGTHS, MARCH_LIGHT, MARCH_POINTS, MARCH_STATE, MARCH_STOPS, MARCH_VISIBLE,
-    MARCH_VOLUMES, MarchParams, SHADE_LIGHTS, STATE_IN, TRACE_HITS, TRACE_LIVE, WAVE_LIGHT_SUMS,
-    WAVE_LIT_RAYS, WAVE_PATHS,
+    MARCH_VOLUMES, MarchParams, SHADE_LIGHTS, SHADE_OBJECTS, STATE_IN, TRACE_HITS, TRACE_LIVE,
+    WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy)]
 pub(crate) enum Marched<'a> {
     /// The rays of a wave, as far as their hits; where volumes are lit, by these lights.
-    Wave { hits: &'a Buffer, lights: Option<&'a Buffer> },
+    Wave { hits: &'a Buffer, objects: &'a Buffer, lights: Option<&'a Buffer> },
     /// Shadow rays, as far as their lights.
     Shadows { lit_rays: &'a Buffer, light_sums: &'a Buffer },
 }
@@ -61,10 +61,10 @@ impl March {
             Kernel::new(device, Self::NAME, module, &bindings, params)
         };
         Ok(Self {
-            wave: kernel(&spirv::march(), &[TRACE_HITS])?,
+            wave: kernel(&spirv::march(), &[TRACE_HITS, SHADE_OBJECTS])?,
             lit: kernel(
                 &spirv::march_lit(),
-                &[TRACE_HITS, SHADE_LIGHTS, MARCH_LIGHT, MARCH_VISIBLE],
+                &[TRACE_HITS, SHADE_OBJECTS, SHADE_LIGHTS, MARCH_LIGHT, MARCH_VISIBLE],
             )?,
             shadows: kernel(&spirv::march_shadows(), &[WAVE_LIT_RAYS, WAVE_LIGHT_SUMS])?,
         })
@@ -87,12 +87,16 @@ impl March {
             .buffer(MARCH_STOPS, &io.volumes.stops)
             .buffer(MARCH_STATE, &io.volumes.marches);
         let pass = match io.marched {
-            Marched::Wave { hits, lights: None } => pass.buffer(TRACE_HITS, hits),
-            Marched::Wave { hits, lights: Some(lights) } => pass
-                .buffer(TRACE_HITS, hits)
-                .buffer(SHADE_LIGHTS, lights)
-                .buffer(MARCH_LIGHT, &io.volumes.march_lights)
-                .buffer(MARCH_VISIBLE, &io.volumes.visible),
+            Marched::Wave { hits, objects, lights } => {
+                let pass = pass.buffer(TRACE_HITS, hits).buffer(SHADE_OBJECTS, objects);
+                match lights {
+                    None => pass,
+                    Some(lights) => pass
+                        .buffer(SHADE_LIGHTS, lights)
+                        .buffer(MARCH_LIGHT, &io.volumes.march_lights)
+                        .buffer(MARCH_VISIBLE, &io.volumes.visible),
+                }
+            }
             Marched::Shadows { lit_rays, light_sums } => {
                 pass.buffer(WAVE_LIT_RAYS, lit_rays).buffer(WAVE_LIGHT_SUMS, light_sums)
             }
