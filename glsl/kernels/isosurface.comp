@@ -176,19 +176,26 @@ void main() {
                     square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
                 search.numerator += weight * point.scalar;
                 search.denominator += weight;
-                search.pull += (weight * point.scalar) * y;
-                search.weights_pull += weight * y;
             }
             uint splines = particles ? count : 0u;
             for (uint i = 0u; i < splines; ++i) {
                 VolumePoint point = volume_points[first + i];
                 vec3 y = point.position - x;
-                float inverse_length = inverse_lengths[first + i];
-                float q = sqrt(dot3(y, y)) * inverse_length;
-                float weight = spline(q);
+                float weight = spline(sqrt(dot3(y, y)) * inverse_lengths[first + i]);
                 search.numerator += weight * point.scalar;
                 search.denominator += weight;
-                search.pull += (spline_pull(q, inverse_length) * point.scalar) * y;
+            }
+            uint pulls = turning ? count : 0u;
+            for (uint i = 0u; i < pulls; ++i) {
+                VolumePoint point = volume_points[first + i];
+                vec3 y = point.position - x;
+                float square = dot3(y, y);
+                float gaussian =
+                    square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
+                float inverse_length = particles ? inverse_lengths[first + i] : 0.0;
+                float pull = particles ? spline_pull(sqrt(square) * inverse_length, inverse_length) : gaussian;
+                search.pull += (pull * point.scalar) * y;
+                search.weights_pull += (particles ? 0.0 : pull) * y;
             }
             bool row_ends = first + count >= range.y;
             search.cursor = row_ends ? 0u : search.cursor + count;

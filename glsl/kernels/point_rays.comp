@@ -1,11 +1,14 @@
 // point_rays: the rays from the points of a volume towards one light.
 //
-// reads   points of volumes, lights, grid
+// reads   volumes, their cells and points, lights, grid
 // writes  the shadow rays' state
 //         paths            inside of the volume's own object
 //         light_sums       1: all of the light
 //         lit_rays         each its own path
 // runs    one invocation per point of a batch
+//
+// Points in cells from which nothing is seen send none: no sample that is seen has one of them in reach,
+// since cells that show anything are marked with two cells around them.
 // twin    crates/reference/src/point_light.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -14,13 +17,13 @@
 #include "math.glsl"
 #include "grid.glsl"
 #include "light.glsl"
+#include "volume.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
-layout(std430, binding = MARCH_POINTS) readonly buffer VolumePoints { VolumePoint volume_points[]; };
 layout(std430, binding = WAVE_PATHS) writeonly buffer Paths { Path paths[]; };
 layout(std430, binding = WAVE_LIT_RAYS) writeonly buffer LitRays { uvec2 lit_rays[]; };
 layout(std430, binding = WAVE_LIGHT_SUMS) writeonly buffer LightSums { LightSum light_sums[]; };
@@ -31,12 +34,14 @@ void main() {
     if (at >= params.count) return;
     vec3 x = volume_points[params.first + at].position;
     LightSample light = sample_light(lights[params.light], x, vec2(0.5));
-    Ray ray = new_ray(x, light.towards, enter_grid(grid, x, light.towards), NONE);
+    VolumeInfo volume = volumes[params.volume];
+    bool seen = volume_cells[volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))].counts != CELL_NOTHING;
+    Ray ray = new_ray(x, light.towards, seen ? enter_grid(grid, x, light.towards) : NONE, NONE);
     ray.hit_t = light.distance;
     store_ray(at, ray);
     paths[at].pixel = 0u;
     paths[at].media_count = 1u;
-    paths[at].media[0] = params.object;
+    paths[at].media[0] = volume.object;
     lit_rays[at] = uvec2(at, NONE);
-    light_sums[at] = LightSum(vec3(0.0), 0u, vec3(1.0), 0u);
+    light_sums[at] = LightSum(vec3(0.0), 0u, vec3(seen ? 1.0 : 0.0), 0u);
 }

@@ -474,7 +474,7 @@ struct PointLightParams { // 16 bytes
     uint first;          //  0  point in the points of all volumes
     uint count;          //  4
     uint light;          //  8
-    uint object;         // 12  that of the volume
+    uint volume;         // 12
 };
 
 // At a diffuse hit.

@@ -143,7 +143,7 @@ fn isosurfaces_throw_and_take_shadows() {
     let (mut dark, mut lit) = ([0; 2], [0; 2]);
     for pixel in 0..film.color.len() {
         let object = film.object[pixel];
-        if object < 0.0 || object > 1.0 {
+        if !(0.0..=1.0).contains(&object) {
             continue;
         }
         let x = film.position[pixel].map(f64::from);

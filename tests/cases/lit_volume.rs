@@ -141,7 +141,7 @@ fn the_skin_of_a_volume_lets_light_in() {
         "[objects.volume]",
         "material = { kind = \"glass\", ior = 1.0 }\n[objects.volume]\nboundary = \"skin\"",
     );
-    let (open, closed) = (render(&text, &[set.clone()]), render(&skinned, &[set]));
+    let (open, closed) = (render(&text, std::slice::from_ref(&set)), render(&skinned, &[set]));
     let middle = 6 * 12 + 6;
     let (open, closed) = (open.color[middle], closed.color[middle]);
     // Without a skin the fog ends a radius beyond it: 2.4 against 2, with 1 - T² = 0.85 against 0.80.

@@ -11,6 +11,7 @@ pub mod ply;
 pub mod room;
 pub mod scenery;
 pub mod sets;
+pub mod solid;
 pub mod sphere;
 pub mod terrain;
 pub mod tube;

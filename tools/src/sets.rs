@@ -31,6 +31,14 @@ pub enum Set {
     Smoke,
     /// The hare with points inside of it, whose `skin` is 0, and a `density`.
     FilledHare,
+    /// A jet that swirls and mixes, 3 long, on a grid that is finer towards its axis, with its `density`.
+    Swirl,
+    /// A stream around two pillars, 4 by 1.2 by 2, with its `speed`.
+    Stream,
+    /// A chain of blobs, about 2 across, at random places of a lattice, with its `density` of 0 to 255.
+    Molecule,
+    /// Particles of a drop that falls into a pool, with their `density` of 1.
+    Splash,
     /// A room with things in it as two laser scanners find it, coloured.
     Room,
 }
@@ -50,6 +58,10 @@ impl Set {
             Self::Room => 90_000,
             Self::Smoke => 40_000,
             Self::FilledHare => 44_000,
+            Self::Swirl => 30_000,
+            Self::Stream => 30_000,
+            Self::Molecule => 24_000,
+            Self::Splash => 36_000,
         }
     }
 
@@ -96,6 +108,10 @@ impl Set {
             Self::Room => coloured(room::points(count)),
             Self::Smoke => filling::smoke(count),
             Self::FilledHare => filling::filled_hare(count),
+            Self::Swirl => filling::swirl(count),
+            Self::Stream => filling::stream(count),
+            Self::Molecule => filling::molecule(count),
+            Self::Splash => filling::splash(count),
         }
     }
 }

@@ -929,10 +929,10 @@ pub struct PointLightParams {
     pub count: u32,
     /// Which.
     pub light: u32,
-    /// That of the volume.
-    pub object: u32,
+    /// Whose points they are.
+    pub volume: u32,
 }
-gpu_layout!(PointLightParams, 16, { first: 0, count: 4, light: 8, object: 12 });
+gpu_layout!(PointLightParams, 16, { first: 0, count: 4, light: 8, volume: 12 });
 
 /// Push constants of `march`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

@@ -8,7 +8,7 @@ use crate::isosurface::blocks;
 use crate::light::sample_light;
 use crate::media::Media;
 use crate::real::{Real, V3};
-use crate::volume::march;
+use crate::volume::{march, may_be_seen};
 use kernels::layout::{NONE, VOLUME_EMITS, VOLUME_LIGHTS};
 use plan::Plan;
 use rayon::prelude::*;
@@ -29,6 +29,9 @@ pub fn point_lights<R: Real>(
         visible[range.clone()].par_iter_mut().zip(&volumes.points[range]).for_each(
             |(of, point)| {
                 let x = V3::of_f32(point.position);
+                if !may_be_seen(info, volumes, x) {
+                    return;
+                }
                 for (of_light, light) in of.iter_mut().zip(&plan.lights) {
                     let sample = sample_light(light, x, [R::of(0.5); 2]);
                     let mut ray = Ray::new(x, sample.towards, &grid, NONE);

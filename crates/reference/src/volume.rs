@@ -10,12 +10,11 @@ use kernels::layout::{
     VOLUME_ISOSURFACE, VOLUME_LIGHTS, VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo,
 };
 use plan::Volumes;
+use std::f64::consts::FRAC_1_PI;
 
 /// Transmittance that still counts.
 const FEWEST: f64 = 1e-30;
 pub(crate) const MOST_SAMPLES: f64 = 16_777_216.0;
-const INVERSE_PI: f32 = 0.318_309_886;
-const INVERSE_FOUR_PI: f32 = 0.079_577_471_5;
 /// A gradient over a point's reach, by the scalar: less is rounding.
 const FLATTEST: f32 = 1e-5;
 
@@ -156,9 +155,9 @@ impl<R: Real> Sums<R> {
         for (light, visible) in lights.iter().zip(self.visible) {
             let light = sample_light(light, x, [R::of(0.5); 2]);
             let share = if steep {
-                normal.dot(light.towards).max(zero) * R::of_f32(INVERSE_PI)
+                normal.dot(light.towards).max(zero) * R::of(FRAC_1_PI)
             } else {
-                R::of_f32(INVERSE_FOUR_PI)
+                R::of(0.25 * FRAC_1_PI)
             };
             sum = sum + light.arriving.times((visible / self.denominator) * share);
         }
@@ -167,7 +166,7 @@ impl<R: Real> Sums<R> {
 }
 
 /// Whether anything may be seen from x.
-fn may_be_seen<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>) -> bool {
+pub(crate) fn may_be_seen<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>) -> bool {
     let grid = Grid::<R>::from(&volume.grid);
     let off = (x - grid.origin).times(grid.inverse_edge);
     let inside = (0..3)

@@ -101,13 +101,12 @@ impl Renderer {
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
         let rays = (self.wave.light_sums().bytes() / size_of::<layout::LightSum>() as u64) as usize;
-        let lit = plan.volumes.point_ranges().filter(|(info, _)| info.shading != VOLUME_EMITS);
-        for (info, range) in lit {
+        let all = (0u32..).zip(plan.volumes.point_ranges());
+        for (volume, (_, range)) in all.filter(|(_, (info, _))| info.shading != VOLUME_EMITS) {
             for first in range.clone().step_by(rays) {
                 let count = (range.end - first).min(rays) as u32;
                 for light in 0..plan.lights.len() as u32 {
-                    let params =
-                        PointLightParams { first: first as u32, count, light, object: info.object };
+                    let params = PointLightParams { first: first as u32, count, light, volume };
                     self.light_batch(plan, &params, stats, watch)?;
                 }
             }
@@ -125,7 +124,7 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         self.record_point_light(params, true);
         self.shadows.swap();
-        let traced = Traced::PastObject(params.object);
+        let traced = Traced::PastObject(plan.volumes.infos[params.volume as usize].object);
         self.trace_to_the_end(plan, [params.count; 2], traced, stats, watch)?;
         self.isosurfaces(plan, params.count, true, stats, watch)?;
         self.march(plan, params.count, true, stats, watch)?;

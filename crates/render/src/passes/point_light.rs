@@ -5,8 +5,9 @@ use crate::state::RayState;
 use crate::volumes::VolumeBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    MARCH_POINTS, MARCH_VISIBLE, PointLightParams, SHADE_LIGHTS, STATE_IN, STATE_OUT, TRACE_INFO,
-    WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS,
+    MARCH_CELLS, MARCH_LENGTHS, MARCH_POINTS, MARCH_STOPS, MARCH_VISIBLE, MARCH_VOLUMES,
+    PointLightParams, SHADE_LIGHTS, STATE_IN, STATE_OUT, TRACE_INFO, WAVE_LIGHT_SUMS,
+    WAVE_LIT_RAYS, WAVE_PATHS,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -42,7 +43,18 @@ impl PointLight {
         };
         let rays = with(
             STATE_OUT,
-            &[TRACE_INFO, SHADE_LIGHTS, MARCH_POINTS, WAVE_PATHS, WAVE_LIT_RAYS, WAVE_LIGHT_SUMS],
+            &[
+                TRACE_INFO,
+                SHADE_LIGHTS,
+                MARCH_VOLUMES,
+                MARCH_CELLS,
+                MARCH_POINTS,
+                MARCH_LENGTHS,
+                MARCH_STOPS,
+                WAVE_PATHS,
+                WAVE_LIT_RAYS,
+                WAVE_LIGHT_SUMS,
+            ],
         );
         let lights = with(STATE_IN, &[WAVE_LIGHT_SUMS, MARCH_VISIBLE]);
         Ok(Self {
@@ -56,7 +68,11 @@ impl PointLight {
         bind_state(rec.pass(Self::RAYS, &self.rays), STATE_OUT, &io.shadows.next)
             .buffer(TRACE_INFO, io.grid_info)
             .buffer(SHADE_LIGHTS, io.lights)
+            .buffer(MARCH_VOLUMES, &io.volumes.infos)
+            .buffer(MARCH_CELLS, &io.volumes.cells)
             .buffer(MARCH_POINTS, &io.volumes.points)
+            .buffer(MARCH_LENGTHS, &io.volumes.inverse_lengths)
+            .buffer(MARCH_STOPS, &io.volumes.stops)
             .buffer(WAVE_PATHS, io.paths)
             .buffer(WAVE_LIT_RAYS, io.lit_rays)
             .buffer(WAVE_LIGHT_SUMS, io.light_sums)
