@@ -24,7 +24,7 @@ pub enum Command {
     Render(RenderArgs),
     /// Measure how long scenes take to render
     Bench(BenchArgs),
-    /// Say what is in a point file or a scene file
+    /// Say what is in a point file, a scene file, or a picture
     Info(InfoArgs),
     /// Validate a scene without rendering it
     Check(CheckArgs),
@@ -32,13 +32,8 @@ pub enum Command {
     Schema,
     /// List the Vulkan devices, and say which is the default and why
     Devices,
-    /// Compare two pictures (not built yet)
-    #[command(disable_help_flag = true)]
-    Compare {
-        /// Not read yet
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
-        rest: Vec<std::ffi::OsString>,
-    },
+    /// Say how far two pictures are apart, and whether that is too far
+    Compare(CompareArgs),
 }
 
 #[derive(Debug, Args)]
@@ -67,6 +62,9 @@ pub struct RenderArgs {
     /// Diagnostic channels to add to EXR files, with commas between; may be given several times
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = diagnostic_parser())]
     pub channels: Vec<Diagnostic>,
+    /// Write R, G, B, A and N of EXR files in 16 bits instead of 32; all other channels stay
+    #[arg(long)]
+    pub half: bool,
     /// Which axis of a point file points upwards [default: y]
     #[arg(long, value_name = "AXIS")]
     pub up: Option<UpAxis>,
@@ -103,13 +101,56 @@ pub struct BenchArgs {
 
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// Point file or scene file
+    /// Point file, scene file, or picture (EXR, PNG, JPEG, Radiance HDR)
     pub file: PathBuf,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
     #[command(flatten)]
     pub progress: ProgressArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Colours of EXR and Radiance HDR files are compared as they are, linear; two PNG or \
+    JPEG files by what they store, sRGB from 0 to 1; one against the other in linear light. Pixels that \
+    only one file's data window has are left out. Equal infinities, and NaN on both sides, differ by 0; \
+    NaN against a number is over any limit. Exit codes: 0 within the limits or none given, 1 over a \
+    limit, 2 files that cannot be compared."
+)]
+pub struct CompareArgs {
+    /// Picture to compare with, the reference of FLIP: EXR, PNG, JPEG or Radiance HDR
+    pub a: PathBuf,
+    /// Picture to compare, of the same size
+    pub b: PathBuf,
+    /// Channels or layers to compare, e.g. RGB,N,Z, with commas between; may be given several times
+    /// [default: all that both files have]
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub channels: Vec<String>,
+    /// Largest |a - b| that any pixel of any of these channels may have, in the channel's unit
+    #[arg(long, value_name = "X", value_parser = parse_limit)]
+    pub max_abs: Option<f64>,
+    /// Largest root mean square of a - b that any of these channels may have, in the channel's unit
+    #[arg(long, value_name = "X", value_parser = parse_limit)]
+    pub rmse: Option<f64>,
+    /// Largest mean FLIP of R, G and B, 0 to 1: HDR-FLIP, or LDR-FLIP where one is PNG or JPEG
+    #[arg(long, value_name = "X", value_parser = parse_limit)]
+    pub flip: Option<f64>,
+    /// List the attributes that differ in the headers of two EXR files; one that differs is over a
+    /// limit
+    #[arg(long)]
+    pub headers: bool,
+    /// Picture of the differences to write: .png, the largest of R, G and B (of all channels where
+    /// these are not compared) in false colours, from black for 0 to pale yellow for --max-abs or
+    /// else the largest there is; .exr, b - a of each channel and FLIP; may be given several times
+    #[arg(long = "diff", value_name = "OUT")]
+    pub diffs: Vec<PathBuf>,
+    /// Leave FLIP out, which takes longest
+    #[arg(long, conflicts_with = "flip")]
+    pub no_flip: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -231,6 +272,13 @@ fn parse_stops(text: &str) -> Result<f64, String> {
     }
 }
 
+fn parse_limit(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(limit) if (0.0..f64::INFINITY).contains(&limit) => Ok(limit),
+        _ => Err("expected a number of at least 0, e.g. 0.001".to_owned()),
+    }
+}
+
 fn parse_crop(text: &str) -> Result<plan::Window, String> {
     let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
     match numbers.as_deref() {
@@ -259,6 +307,10 @@ mod tests {
         assert_eq!(parse_crop("1,2,3,4"), Ok(window));
         for wrong in ["1,2,3", "1,2,3,4,5", "a,2,3,4", ""] {
             assert!(parse_crop(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(parse_limit("1e-3"), Ok(0.001));
+        for wrong in ["", "-1", "nan", "inf", "1e999", "0,5"] {
+            assert!(parse_limit(wrong).is_err(), "{wrong}");
         }
         assert_eq!(parse_stops("-1.5"), Ok(-1.5));
         for wrong in ["", "bright", "nan", "inf", "101"] {

@@ -13,6 +13,8 @@ use std::error::Error;
 pub enum Exit {
     /// 0: done.
     Done,
+    /// 1: `compare` found a difference over a limit.
+    Difference,
     /// 2: the command line, a scene or an input is at fault.
     Usage,
     /// 3: no usable Vulkan device.
@@ -24,10 +26,11 @@ pub enum Exit {
 }
 
 impl Exit {
-    /// The number. 1 is `compare`'s: a difference over a limit.
+    /// The number.
     pub fn code(self) -> u8 {
         match self {
             Self::Done => 0,
+            Self::Difference => 1,
             Self::Usage => 2,
             Self::NoDevice => 3,
             Self::Exhausted => 4,

@@ -15,6 +15,7 @@ mod input;
 mod interrupt;
 mod memory;
 mod progress;
+mod provenance;
 mod stats;
 
 use errors::{Exit, Failure};

@@ -8,6 +8,7 @@ use crate::errors::Failure;
 use film::FileFormat;
 use plan::Window;
 use std::fs;
+use std::path::Path;
 
 /// Twelve planes of f32: the film. While an EXR is encoded, there are two of each plane.
 const FILM_PIXEL: u64 = 48;
@@ -34,6 +35,18 @@ pub fn require_picture(
 /// Fails where the surfaces of this many points do not fit.
 pub fn require_points(count: u64) -> Result<(), Failure> {
     require(count.saturating_mul(POINT), &format!("{count} points"), "thin the point sets")
+}
+
+/// Fails where the pixels of these pictures do not fit, so far as their headers tell.
+pub fn require_pictures(paths: &[&Path]) -> Result<(), Failure> {
+    let mut bytes: u64 = 0;
+    for path in paths {
+        if film::is_exr(path)? {
+            bytes = bytes.saturating_add(film::exr_pixel_bytes(path)?);
+        }
+    }
+    let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    require(bytes, &names.join(" with "), "use a machine with more memory, or crop the pictures")
 }
 
 fn require(bytes: u64, what: &str, help: &str) -> Result<(), Failure> {

@@ -16,24 +16,34 @@ const JPEG_QUALITY: u8 = 95;
 /// The film's window as PNG: RGBA if the film is transparent, else RGB.
 pub(crate) fn png(film: &Film, tone: Tone, path: &Path) -> Result<Vec<u8>, FilmError> {
     let Window { width, height, .. } = film.window;
+    let (color, pixels): (_, Vec<u8>) = if film.transparent {
+        let straight = film.color.iter().flat_map(|&color| straight_rgba(color, tone));
+        (png::ColorType::Rgba, straight.collect())
+    } else {
+        (png::ColorType::Rgb, opaque(film, tone))
+    };
+    png_of([width, height], color, &pixels, path)
+}
+
+/// Bytes of sRGB as PNG.
+pub(crate) fn png_of(
+    size: [u32; 2],
+    color: png::ColorType,
+    pixels: &[u8],
+    path: &Path,
+) -> Result<Vec<u8>, FilmError> {
     let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, width, height);
+    let mut encoder = png::Encoder::new(&mut file, size[0], size[1]);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    let pixels = if film.transparent {
-        encoder.set_color(png::ColorType::Rgba);
-        film.color.iter().flat_map(|&color| straight_rgba(color, tone)).collect()
-    } else {
-        encoder.set_color(png::ColorType::Rgb);
-        opaque(film, tone)
-    };
+    encoder.set_color(color);
     encoder
         .write_header()
         .and_then(|mut writer| {
-            writer.write_image_data(&pixels)?;
+            writer.write_image_data(pixels)?;
             writer.finish()
         })
-        .map_err(|error| encode_error(film, path, &error))?;
+        .map_err(|error| encode_error(size, path, &error))?;
     Ok(file)
 }
 
@@ -43,7 +53,7 @@ pub(crate) fn jpeg(film: &Film, tone: Tone, path: &Path) -> Result<Vec<u8>, Film
     let mut file = Vec::new();
     JpegEncoder::new_with_quality(&mut file, JPEG_QUALITY)
         .encode(&opaque(film, tone), width, height, ExtendedColorType::Rgb8)
-        .map_err(|error| encode_error(film, path, &error))?;
+        .map_err(|error| encode_error([width, height], path, &error))?;
     Ok(file)
 }
 
@@ -60,7 +70,10 @@ fn straight_rgba([r, g, b, a]: [f32; 4], tone: Tone) -> [u8; 4] {
     [straight(r), straight(g), straight(b), unit_byte(f64::from(a))]
 }
 
-fn encode_error(film: &Film, path: &Path, reason: &dyn std::fmt::Display) -> FilmError {
-    let Window { width, height, .. } = film.window;
+fn encode_error(
+    [width, height]: [u32; 2],
+    path: &Path,
+    reason: &dyn std::fmt::Display,
+) -> FilmError {
     FilmError::Encode { path: path.into(), width, height, reason: reason.to_string() }
 }

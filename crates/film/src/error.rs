@@ -18,10 +18,10 @@ pub enum FilmError {
         /// Its extension without the dot, empty if there is none.
         found: String,
     },
-    /// The output is a folder.
+    /// The file to write or to read is a folder.
     #[error("{}: found a folder, expected a file; add a file name", path.display())]
     IsFolder {
-        /// The output as given.
+        /// The path as given.
         path: PathBuf,
     },
     /// What should be the output's folder is none.
@@ -74,7 +74,7 @@ pub enum FilmError {
         reason: String,
     },
     /// The file could not be opened or read.
-    #[error("{}: cannot read the file", path.display())]
+    #[error("{}: cannot read the file; check its name and permissions", path.display())]
     Read {
         /// The input as given.
         path: PathBuf,

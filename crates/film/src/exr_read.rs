@@ -1,12 +1,21 @@
-//! EXR pictures as planes of f32, whoever wrote them.
+//! EXR pictures, whoever wrote them: every part with every channel, in the numbers that the file has.
+//!
+//! What the crate `exr` reads is read: all compressions up to OpenEXR 3.3, half, float and unsigned integers,
+//! scan lines and tiles in any order, and of several resolutions the highest. Deep data and
+//! subsampled channels are errors.
 
 use crate::error::FilmError;
-use exr::meta::attribute::{AttributeValue, IntegerBounds, Text};
-use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, Vec2, read};
+use crate::exr_header::{COMPRESSIONS, COMPRESSIONS_READ, ExrHeader, read_exr_headers};
+use exr::image::Image;
+use exr::meta::attribute::{IntegerBounds, Text};
+use exr::prelude::{AnyChannels, FlatSamples, Layers, ReadChannels, ReadLayers, Vec2, read};
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, ErrorKind};
 use std::path::Path;
+
+/// Longest side of a picture in pixels.
+const LONGEST: i64 = 65_536;
 
 /// An EXR picture: the first part of the file with its highest resolution.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,80 +39,222 @@ pub struct ExrPicture {
     pub world_to_ndc: Option<[[f32; 4]; 4]>,
 }
 
-/// Reads an EXR file. Deep data and subsampled channels are not read.
+/// All of an EXR file.
+#[derive(Debug, Clone)]
+pub struct ExrFile {
+    /// Column and row of the display window's upper left pixel.
+    pub display_origin: [i32; 2],
+    /// Width and height of the display window.
+    pub display_size: [u32; 2],
+    /// The parts, in the order of the file. At least one.
+    pub parts: Vec<ExrPart>,
+}
+
+/// One part of an EXR file, with its highest resolution.
+#[derive(Debug, Clone)]
+pub struct ExrPart {
+    /// The part's name, if it has one.
+    pub name: Option<String>,
+    /// Column and row of the data window's upper left pixel.
+    pub data_origin: [i32; 2],
+    /// Width and height of the data window.
+    pub data_size: [u32; 2],
+    /// Channel name to the values of the data window, row-major, row 0 at the top.
+    pub channels: BTreeMap<String, Samples>,
+    /// Every attribute.
+    pub header: ExrHeader,
+}
+
+/// The values of a channel in the file's own number type.
+#[derive(Debug, Clone)]
+pub struct Samples(FlatSamples);
+
+impl Samples {
+    /// Values of 32-bit floats.
+    #[must_use]
+    pub fn from_f32(values: Vec<f32>) -> Self {
+        Self(FlatSamples::F32(values))
+    }
+
+    #[cfg(test)]
+    pub(crate) fn of(samples: FlatSamples) -> Self {
+        Self(samples)
+    }
+
+    /// One value, in a type that holds all of them exactly.
+    ///
+    /// # Panics
+    /// If there are not as many.
+    #[must_use]
+    pub fn at(&self, index: usize) -> f64 {
+        match &self.0 {
+            FlatSamples::F16(values) => values[index].to_f64(),
+            FlatSamples::F32(values) => values[index].into(),
+            FlatSamples::U32(values) => values[index].into(),
+        }
+    }
+
+    /// Number of values.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// OpenEXR's name of the number type: `half`, `float` or `uint`.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match self.0 {
+            FlatSamples::F16(_) => "half",
+            FlatSamples::F32(_) => "float",
+            FlatSamples::U32(_) => "uint",
+        }
+    }
+
+    /// The values in a type that holds all of them exactly.
+    pub fn iter(&self) -> impl Iterator<Item = f64> {
+        (0..self.len()).map(|index| self.at(index))
+    }
+
+    /// The values as f32, which rounds integers beyond 2²⁴.
+    fn into_f32(self) -> Vec<f32> {
+        match self.0 {
+            FlatSamples::F32(values) => values,
+            FlatSamples::F16(values) => values.into_iter().map(|value| value.to_f32()).collect(),
+            FlatSamples::U32(values) => values.into_iter().map(|value| value as f32).collect(),
+        }
+    }
+}
+
+/// Reads the first part of an EXR file. Deep data and subsampled channels are not read.
+///
+/// # Errors
+/// As [`read_exr_file()`].
+pub fn read_exr(path: &Path) -> Result<ExrPicture, FilmError> {
+    let file = read_exr_file(path)?;
+    let (display_origin, display_size) = (file.display_origin, file.display_size);
+    let Some(part) = file.parts.into_iter().next() else {
+        return Err(not_exr(path, "found no picture in it"));
+    };
+    let strings = (part.header.attributes.iter())
+        .filter_map(|attribute| Some((attribute.name.clone(), part.header.text(&attribute.name)?)));
+    Ok(ExrPicture {
+        display_origin,
+        display_size,
+        data_origin: part.data_origin,
+        data_size: part.data_size,
+        strings: strings.collect(),
+        world_to_camera: part.header.matrix("worldToCamera"),
+        world_to_ndc: part.header.matrix("worldToNDC"),
+        channels: (part.channels.into_iter())
+            .map(|(name, samples)| (name, samples.into_f32()))
+            .collect(),
+    })
+}
+
+/// Reads all parts of an EXR file. Deep data and subsampled channels are not read.
 ///
 /// # Errors
 /// [`FilmError::Read`] if the file cannot be opened, [`FilmError::NotExr`] if it is no EXR, is cut
-/// off, or holds what is not read.
-pub fn read_exr(path: &Path) -> Result<ExrPicture, FilmError> {
-    let read_error = |source| FilmError::Read { path: path.into(), source };
-    let not_exr = |reason: String| FilmError::NotExr { path: path.into(), reason };
-
-    let file = File::open(path).map_err(read_error)?;
-    let image = read()
+/// off, is longer than 65536 pixels on a side, or holds what is not read.
+pub fn read_exr_file(path: &Path) -> Result<ExrFile, FilmError> {
+    let headers = read_exr_headers(path)?;
+    check_readable(path, &headers)?;
+    let file = File::open(path).map_err(|source| FilmError::Read { path: path.into(), source })?;
+    let image: Image<Layers<AnyChannels<FlatSamples>>> = read()
         .no_deep_data()
         .largest_resolution_level()
         .all_channels()
-        .first_valid_layer()
+        .all_layers()
         .all_attributes()
         .from_buffered(BufReader::new(file))
         .map_err(|error| match error {
-            exr::error::Error::Io(source) => read_error(source),
-            other => not_exr(other.to_string()),
+            exr::error::Error::Io(source) if source.kind() == ErrorKind::UnexpectedEof => {
+                not_exr(path, "found a file that is cut off")
+            }
+            exr::error::Error::Io(source) => FilmError::Read { path: path.into(), source },
+            exr::error::Error::Invalid(reason) => {
+                not_exr(path, &format!("found a damaged file or one that is cut off ({reason})"))
+            }
+            exr::error::Error::NotSupported(reason) => {
+                not_exr(path, &format!("found what is not read here ({reason})"))
+            }
+            exr::error::Error::Aborted => not_exr(path, "reading was aborted"),
         })?;
-
-    let layer = image.layer_data;
-    let Vec2(width, height) = layer.size;
-    let mut channels = BTreeMap::new();
-    for channel in layer.channel_data.list {
-        let name = utf8(&channel.name);
-        if channel.sampling != Vec2(1, 1) {
-            return Err(not_exr(format!("channel '{name}' is subsampled, which is not read")));
-        }
-        let samples = match channel.sample_data {
-            FlatSamples::F32(samples) => samples,
-            FlatSamples::F16(samples) => samples.into_iter().map(|value| value.to_f32()).collect(),
-            FlatSamples::U32(samples) => samples.into_iter().map(|value| value as f32).collect(),
-        };
-        channels.insert(name, samples);
-    }
-
-    let attributes = layer.attributes;
-    let mut strings = BTreeMap::new();
-    for (name, value) in attributes.other.iter().chain(&image.attributes.other) {
-        if let AttributeValue::Text(value) = value {
-            strings.insert(utf8(name), utf8(value));
-        }
-    }
-    for (name, value) in [
-        ("software", &attributes.software_name),
-        ("owner", &attributes.owner),
-        ("comments", &attributes.comments),
-        ("name", &attributes.layer_name),
-    ] {
-        if let Some(value) = value {
-            strings.insert(name.to_owned(), utf8(value));
-        }
-    }
-
+    let parts = image.layer_data.into_iter().zip(headers).map(|(layer, header)| ExrPart {
+        name: layer.attributes.layer_name.as_ref().map(utf8),
+        data_origin: [layer.attributes.layer_position.0, layer.attributes.layer_position.1],
+        data_size: [layer.size.0 as u32, layer.size.1 as u32],
+        channels: (layer.channel_data.list.into_iter())
+            .map(|channel| (utf8(&channel.name), Samples(channel.sample_data)))
+            .collect(),
+        header,
+    });
     let IntegerBounds { position: Vec2(left, top), size: Vec2(columns, rows) } =
         image.attributes.display_window;
-    Ok(ExrPicture {
+    Ok(ExrFile {
         display_origin: [left, top],
         display_size: [columns as u32, rows as u32],
-        data_origin: [attributes.layer_position.0, attributes.layer_position.1],
-        data_size: [width as u32, height as u32],
-        channels,
-        strings,
-        world_to_camera: attributes.world_to_camera.map(rows_of),
-        world_to_ndc: attributes.world_to_normalized_device.map(rows_of),
+        parts: parts.collect(),
     })
+}
+
+/// How many bytes all pixels of an EXR file take once they are read, by its headers alone.
+///
+/// # Errors
+/// As [`read_exr_file()`], where the headers tell.
+pub fn exr_pixel_bytes(path: &Path) -> Result<u64, FilmError> {
+    let headers = read_exr_headers(path)?;
+    check_readable(path, &headers)?;
+    Ok(headers.iter().map(ExrHeader::pixel_bytes).fold(0, u64::saturating_add))
+}
+
+/// Fails where a header announces what is not read: before memory is taken for it.
+fn check_readable(path: &Path, headers: &[ExrHeader]) -> Result<(), FilmError> {
+    for header in headers {
+        if let Some(&number) = header.get("compression").and_then(|found| found.bytes.first())
+            && number >= COMPRESSIONS_READ
+        {
+            let name = COMPRESSIONS.get(usize::from(number)).copied().unwrap_or("unknown");
+            return Err(not_exr(
+                path,
+                &format!(
+                    "found compression {name} (number {number}), which is not read here; save it with ZIP"
+                ),
+            ));
+        }
+        if header.text("type").is_some_and(|kind| kind.starts_with("deep")) {
+            return Err(not_exr(path, "found deep data, which is not read here; flatten it"));
+        }
+        if let Some(name) = header.channels().into_iter().find(|channel| channel.subsampled) {
+            let name = name.name;
+            return Err(not_exr(
+                path,
+                &format!("found channel '{name}' subsampled, which is not read here"),
+            ));
+        }
+        if let Some([left, top, right, bottom]) = header.window("dataWindow") {
+            let (width, height) = (right - left + 1, bottom - top + 1);
+            if !(1..=LONGEST).contains(&width) || !(1..=LONGEST).contains(&height) {
+                return Err(not_exr(
+                    path,
+                    &format!("found {width} x {height} pixels, expected 1 to {LONGEST} on a side"),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn not_exr(path: &Path, reason: &str) -> FilmError {
+    FilmError::NotExr { path: path.into(), reason: reason.to_owned() }
 }
 
 fn utf8(text: &Text) -> String {
     String::from_utf8_lossy(text.as_slice()).into_owned()
-}
-
-fn rows_of(matrix: [f32; 16]) -> [[f32; 4]; 4] {
-    std::array::from_fn(|row| std::array::from_fn(|column| matrix[4 * row + column]))
 }

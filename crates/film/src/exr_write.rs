@@ -1,23 +1,27 @@
-//! A film as OpenEXR: scan lines, ZIP in blocks of 16 lines, 32-bit float, linear Rec. 709.
+//! A film as OpenEXR: scan lines, ZIP in blocks of 16 lines, linear Rec. 709, in 32-bit float or, where
+//! asked for, colours and normals in 16-bit.
 //!
 //! The crate `exr` keeps custom attributes in a hash map with a random seed, so the order in which
-//! it writes them changes from run to run. [`sort_header`] puts them in alphabetical order, as the
+//! it writes them changes from run to run. [`sort_attributes`] puts them in alphabetical order, as the
 //! OpenEXR library does. Blocks are compressed in parallel and written in the order of their lines.
 //! Both together make equal films equal files: `two_writes_are_equal_to_the_byte`.
 
 use crate::error::FilmError;
+use crate::exr_header::sort_attributes;
 use crate::picture::{Film, Provenance, Window};
 use exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, LineOrder, Text};
 use exr::meta::header::{ImageAttributes, LayerAttributes};
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer, Vec2,
-    WritableImage,
+    WritableImage, f16,
 };
 use std::io::Cursor;
 use std::path::Path;
 
 const SOFTWARE: &str = concat!("Pointillist ", env!("CARGO_PKG_VERSION"));
 const PREFIX: &str = "pointillist/";
+/// Largest finite number of 16 bits.
+pub const HALF_MAX: f32 = 65_504.0;
 /// Longest attribute name that OpenEXR files can hold, in bytes.
 const MAX_NAME: usize = 255;
 
@@ -28,40 +32,74 @@ const ENCODING: Encoding = Encoding {
     line_order: LineOrder::Increasing,
 };
 
+/// What a file is to hold: windows, attributes, and planes of the data window.
+struct Contents {
+    /// Width and height of the display window.
+    size: [u32; 2],
+    /// Column and row of the data window's upper left pixel.
+    origin: [i32; 2],
+    /// Width and height of the data window.
+    extent: [u32; 2],
+    /// Without name and position.
+    attributes: LayerAttributes,
+    channels: Vec<AnyChannel<FlatSamples>>,
+}
+
 /// The film as the bytes of an EXR file. `path` is for messages.
 pub(crate) fn encode(
     film: &Film,
     provenance: &Provenance,
+    half: bool,
     path: &Path,
 ) -> Result<Vec<u8>, FilmError> {
-    let Window { x, y, width, height } = film.window;
-    let header_error = |reason: String| FilmError::Header { path: path.into(), reason };
-
-    let mut layer_attributes = LayerAttributes {
-        layer_name: None,
-        layer_position: Vec2(x as i32, y as i32),
+    let mut attributes = LayerAttributes {
         world_to_camera: Some(flat(provenance.world_to_camera)),
         world_to_normalized_device: Some(flat(provenance.world_to_ndc)),
-        software_name: Some(text(SOFTWARE)),
         ..LayerAttributes::default()
     };
-    for (key, value) in string_attributes(provenance).map_err(header_error)? {
-        layer_attributes.other.insert(text(&key), AttributeValue::Text(text(&value)));
+    let strings = string_attributes(provenance)
+        .map_err(|reason| FilmError::Header { path: path.into(), reason })?;
+    for (key, value) in strings {
+        attributes.other.insert(text(&key), AttributeValue::Text(text(&value)));
     }
+    let channels = channels(film, half);
+    let Window { x, y, width, height } = film.window;
+    let (origin, extent) = ([x as i32, y as i32], [width, height]);
+    encode_contents(Contents { size: film.size, origin, extent, attributes, channels }, path)
+}
 
+/// Planes of 32-bit floats as the bytes of an EXR file, as [`write_planes`](crate::write_planes)
+/// takes them.
+pub(crate) fn encode_planes(
+    size: [u32; 2],
+    origin: [i32; 2],
+    extent: [u32; 2],
+    planes: Vec<(String, Vec<f32>)>,
+    path: &Path,
+) -> Result<Vec<u8>, FilmError> {
+    let channels = planes.into_iter().map(|(name, samples)| float(&name, samples)).collect();
+    let attributes = LayerAttributes::default();
+    encode_contents(Contents { size, origin, extent, attributes, channels }, path)
+}
+
+fn encode_contents(contents: Contents, path: &Path) -> Result<Vec<u8>, FilmError> {
+    let ([x, y], [width, height]) = (contents.origin, contents.extent);
     let mut image_attributes = ImageAttributes::new(IntegerBounds {
         position: Vec2(0, 0),
-        size: Vec2(film.size[0] as usize, film.size[1] as usize),
+        size: Vec2(contents.size[0] as usize, contents.size[1] as usize),
     });
     image_attributes.chromaticities = Some(REC_709);
-
-    let size = Vec2(width as usize, height as usize);
     let image = Image {
         attributes: image_attributes,
         layer_data: Layer {
-            channel_data: channels(film),
-            attributes: layer_attributes,
-            size,
+            channel_data: AnyChannels::sort(contents.channels.into()),
+            attributes: LayerAttributes {
+                layer_name: None,
+                layer_position: Vec2(x, y),
+                software_name: Some(text(SOFTWARE)),
+                ..contents.attributes
+            },
+            size: Vec2(width as usize, height as usize),
             encoding: ENCODING,
         },
     };
@@ -73,7 +111,10 @@ pub(crate) fn encode(
         reason: error.to_string(),
     })?;
     let mut bytes = file.into_inner();
-    sort_header(&mut bytes).ok_or_else(|| header_error("an attribute has no end".to_owned()))?;
+    sort_attributes(&mut bytes).ok_or_else(|| FilmError::Header {
+        path: path.into(),
+        reason: "an attribute has no end".to_owned(),
+    })?;
     Ok(bytes)
 }
 
@@ -85,35 +126,57 @@ const REC_709: Chromaticities = Chromaticities {
     white: Vec2(0.3127, 0.3290),
 };
 
-/// All channels of a film, sorted by name as the format wants them.
-fn channels(film: &Film) -> AnyChannels<FlatSamples> {
-    fn channel(name: &str, samples: Vec<f32>) -> AnyChannel<FlatSamples> {
-        AnyChannel::new(text(name), FlatSamples::F32(samples))
-    }
+/// All channels of a film. With `half`, what is looked at is in 16 bits: R, G, B, A and N. What is
+/// measured or counted stays: a half has three decimal digits, and no index over 2048.
+fn channels(film: &Film, half: bool) -> Vec<AnyChannel<FlatSamples>> {
     fn plane<const N: usize>(pixels: &[[f32; N]], index: usize) -> Vec<f32> {
         pixels.iter().map(|pixel| pixel[index]).collect()
     }
+    let shown = |name: &str, samples: Vec<f32>| match half {
+        true => AnyChannel::new(text(name), FlatSamples::F16(halves(&samples))),
+        false => float(name, samples),
+    };
     let mut list = vec![
-        channel("R", plane(&film.color, 0)),
-        channel("G", plane(&film.color, 1)),
-        channel("B", plane(&film.color, 2)),
-        channel("A", plane(&film.color, 3)),
-        channel("Z", film.depth.clone()),
-        channel("P.X", plane(&film.position, 0)),
-        channel("P.Y", plane(&film.position, 1)),
-        channel("P.Z", plane(&film.position, 2)),
-        channel("N.X", plane(&film.normal, 0)),
-        channel("N.Y", plane(&film.normal, 1)),
-        channel("N.Z", plane(&film.normal, 2)),
-        channel("object", film.object.clone()),
+        shown("R", plane(&film.color, 0)),
+        shown("G", plane(&film.color, 1)),
+        shown("B", plane(&film.color, 2)),
+        shown("A", plane(&film.color, 3)),
+        float("Z", film.depth.clone()),
+        float("P.X", plane(&film.position, 0)),
+        float("P.Y", plane(&film.position, 1)),
+        float("P.Z", plane(&film.position, 2)),
+        shown("N.X", plane(&film.normal, 0)),
+        shown("N.Y", plane(&film.normal, 1)),
+        shown("N.Z", plane(&film.normal, 2)),
+        float("object", film.object.clone()),
     ];
     for (name, samples) in &film.extra {
-        let extra = channel(name, samples.clone());
+        let extra = float(name, samples.clone());
         let free = !name.is_empty() && list.iter().all(|channel| channel.name != extra.name);
         assert!(free, "film: the channel name '{name}' is not free");
         list.push(extra);
     }
-    AnyChannels::sort(list.into())
+    list
+}
+
+fn float(name: &str, samples: Vec<f32>) -> AnyChannel<FlatSamples> {
+    AnyChannel::new(text(name), FlatSamples::F32(samples))
+}
+
+/// Values in 16 bits, rounded to nearest. A finite value stays finite: beyond [`HALF_MAX`] it becomes
+/// that. Infinities and NaN stay what they are.
+fn halves(samples: &[f32]) -> Vec<f16> {
+    let within = |value: f32| match value.is_finite() {
+        true => value.clamp(-HALF_MAX, HALF_MAX),
+        false => value,
+    };
+    samples.iter().map(|&value| f16::from_f32(within(value))).collect()
+}
+
+/// How many colour values of a film are finite and beyond what 16 bits hold.
+pub(crate) fn beyond_half(film: &Film) -> usize {
+    let values = film.color.iter().flatten();
+    values.filter(|value| value.is_finite() && value.abs() > HALF_MAX).count()
 }
 
 /// The origin and the settings under the names they have in the file. Fails with what is wrong.
@@ -148,31 +211,4 @@ fn flat(matrix: [[f32; 4]; 4]) -> [f32; 16] {
     let mut values = [0.0; 16];
     values.copy_from_slice(matrix.as_flattened());
     values
-}
-
-/// Sorts the attributes of a file with one header by name, in place: their total length, and so
-/// every offset behind them, stays. `None` if the header does not end.
-fn sort_header(file: &mut [u8]) -> Option<()> {
-    const START: usize = 8; // magic number and version
-    let mut attributes = Vec::new();
-    let mut at = START;
-    // An attribute is a name and a type, each ended by a zero byte, a length, and that many bytes.
-    while *file.get(at)? != 0 {
-        let name_end = zero_from(file, at)?;
-        let type_end = zero_from(file, name_end + 1)?;
-        let length = file.get(type_end + 1..type_end + 5)?;
-        let length = u32::from_le_bytes(length.try_into().ok()?) as usize;
-        let end = type_end + 5 + length;
-        attributes.push((file[at..name_end].to_vec(), file.get(at..end)?.to_vec()));
-        at = end;
-    }
-    attributes.sort();
-    let sorted: Vec<u8> = attributes.into_iter().flat_map(|(_, bytes)| bytes).collect();
-    file.get_mut(START..at)?.copy_from_slice(&sorted);
-    Some(())
-}
-
-/// Place of the first zero byte at or after `start`.
-fn zero_from(bytes: &[u8], start: usize) -> Option<usize> {
-    bytes.get(start..)?.iter().position(|&byte| byte == 0).map(|offset| start + offset)
 }

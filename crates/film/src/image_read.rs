@@ -2,16 +2,15 @@
 
 use crate::error::FilmError;
 use crate::exr_read::read_exr;
+use crate::raster_read::is_exr;
 use crate::srgb::linear_from_srgb;
 use image::{DynamicImage, ImageError, ImageReader};
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::BufReader;
 use std::path::Path;
 
 /// Longest side of an image.
 const LONGEST: u32 = 65_536;
-/// What bytes an EXR file begins with.
-const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// An image as a file has it, without its alpha.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,14 +39,17 @@ pub enum Texels {
 /// A file that cannot be read, is none of the four formats, is damaged, or is longer than 65536 pixels on a
 /// side.
 pub fn read_image(path: &Path) -> Result<Image, FilmError> {
-    let read_error = |source| FilmError::Read { path: path.into(), source };
-    let not_image = |reason: String| FilmError::NotImage { path: path.into(), reason };
-    let mut start = Vec::new();
-    let file = File::open(path).map_err(read_error)?;
-    (&file).take(EXR_MAGIC.len() as u64).read_to_end(&mut start).map_err(read_error)?;
-    if start == EXR_MAGIC {
+    if is_exr(path)? {
         return from_exr(path);
     }
+    let decoded = decode(path)?;
+    Ok(Image { width: decoded.width(), height: decoded.height(), texels: texels_of(decoded) })
+}
+
+/// Decodes a file that is no EXR.
+pub(crate) fn decode(path: &Path) -> Result<DynamicImage, FilmError> {
+    let read_error = |source| FilmError::Read { path: path.into(), source };
+    let not_image = |reason: String| FilmError::NotImage { path: path.into(), reason };
     let file = File::open(path).map_err(read_error)?;
     let mut reader =
         ImageReader::new(BufReader::new(file)).with_guessed_format().map_err(read_error)?;
@@ -62,11 +64,10 @@ pub fn read_image(path: &Path) -> Result<Image, FilmError> {
         ImageError::IoError(source) => read_error(source),
         other => not_image(other.to_string()),
     })?;
-    let (width, height) = (decoded.width(), decoded.height());
-    if width == 0 || height == 0 {
+    if decoded.width() == 0 || decoded.height() == 0 {
         return Err(not_image("found no pixel".to_owned()));
     }
-    Ok(Image { width, height, texels: texels_of(decoded) })
+    Ok(decoded)
 }
 
 fn texels_of(decoded: DynamicImage) -> Texels {

@@ -8,18 +8,25 @@
 
 mod eight_bit;
 mod error;
+mod exr_header;
 mod exr_read;
 mod exr_write;
 mod image_read;
 mod picture;
+mod raster_read;
 mod srgb;
 mod store;
 mod tone;
 
 pub use error::FilmError;
-pub use exr_read::{ExrPicture, read_exr};
+pub use exr_header::{ExrAttribute, ExrHeader};
+pub use exr_read::{
+    ExrFile, ExrPart, ExrPicture, Samples, exr_pixel_bytes, read_exr, read_exr_file,
+};
+pub use exr_write::HALF_MAX;
 pub use image_read::{Image, Texels, read_image};
 pub use picture::{Film, Provenance, Window};
+pub use raster_read::{Raster, is_exr, read_raster};
 pub use srgb::{linear_from_srgb, srgb_byte};
 pub use store::store;
 pub use tone::{Tone, ToneCurve};
@@ -55,6 +62,16 @@ impl FileFormat {
     }
 }
 
+/// How a film is written, beyond what its format says.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Style {
+    /// How PNG and JPEG are made of the colours; an EXR has the numbers as they are.
+    pub tone: Tone,
+    /// Whether R, G, B, A and N of an EXR are in 16 bits. Finite values beyond [`HALF_MAX`] become
+    /// that; all other channels stay in 32 bits.
+    pub half: bool,
+}
+
 /// Writes a film in the format that the extension of `path` asks for.
 ///
 /// The data window alone has pixels. An EXR places it in the full image; a PNG or JPEG is of its
@@ -70,31 +87,77 @@ impl FileFormat {
 /// ([`FilmError::is_out_of_space`]), or a picture that the format cannot hold. Nothing is left
 /// behind then, and a file that was there before is as it was.
 pub fn write(film: &Film, provenance: &Provenance, path: &Path) -> Result<(), FilmError> {
-    write_toned(film, provenance, Tone::default(), path)
+    write_styled(film, provenance, Style::default(), path)
 }
 
-/// As [`write()`], with a tone for PNG and JPEG; an EXR has the numbers as they are.
+/// As [`write()`], with a tone for PNG and JPEG, or 16 bits in an EXR.
 ///
 /// # Panics
 /// As [`write()`].
 ///
 /// # Errors
 /// As [`write()`].
-pub fn write_toned(
+pub fn write_styled(
     film: &Film,
     provenance: &Provenance,
-    tone: Tone,
+    style: Style,
     path: &Path,
 ) -> Result<(), FilmError> {
     film.assert_consistent();
     let bytes = match FileFormat::from_path(path)? {
-        FileFormat::Exr => exr_write::encode(film, provenance, path)?,
-        FileFormat::Png => eight_bit::png(film, tone, path)?,
-        FileFormat::Jpeg => eight_bit::jpeg(film, tone, path)?,
+        FileFormat::Exr => exr_write::encode(film, provenance, style.half, path)?,
+        FileFormat::Png => eight_bit::png(film, style.tone, path)?,
+        FileFormat::Jpeg => eight_bit::jpeg(film, style.tone, path)?,
     };
     store(path, &bytes)
 }
 
+/// How many colour values of a film are finite and beyond [`HALF_MAX`], so that [`Style::half`] changes
+/// them by more than rounding.
+#[must_use]
+pub fn beyond_half(film: &Film) -> usize {
+    exr_write::beyond_half(film)
+}
+
+/// Writes planes of 32-bit floats as an EXR: `planes` by their channel names, each row-major with the
+/// pixels of the data window, of `extent` columns and rows from `origin` on, in a display window of
+/// `size` from 0, 0 on.
+///
+/// # Panics
+/// If a plane has not as many values as the data window has pixels.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_planes(
+    size: [u32; 2],
+    origin: [i32; 2],
+    extent: [u32; 2],
+    planes: Vec<(String, Vec<f32>)>,
+    path: &Path,
+) -> Result<(), FilmError> {
+    let pixels = extent[0] as usize * extent[1] as usize;
+    for (name, plane) in &planes {
+        assert_eq!(plane.len(), pixels, "film: pixels of plane '{name}'");
+    }
+    store(path, &exr_write::encode_planes(size, origin, extent, planes, path)?)
+}
+
+/// Writes colours in 8-bit sRGB as a PNG of `size` pixels, row-major.
+///
+/// # Panics
+/// If there are not as many colours as pixels.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_png(size: [u32; 2], pixels: &[[u8; 3]], path: &Path) -> Result<(), FilmError> {
+    assert_eq!(pixels.len(), size[0] as usize * size[1] as usize, "film: pixels of a PNG");
+    store(path, &eight_bit::png_of(size, png::ColorType::Rgb, pixels.as_flattened(), path)?)
+}
+
+#[cfg(test)]
+mod exr_read_tests;
+#[cfg(test)]
+mod half_tests;
 #[cfg(test)]
 mod image_read_tests;
 #[cfg(test)]

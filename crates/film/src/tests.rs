@@ -412,7 +412,7 @@ fn a_tone_changes_eight_bit_files_alone() {
         let path = folder.path().join(name);
         let mut film = Film::empty([2, 1], Window::whole([2, 1]), true);
         film.color[1] = [0.25, 0.125, 0.0, 0.5];
-        write_toned(&film, &provenance(), tone, &path).unwrap();
+        write_styled(&film, &provenance(), Style { tone, ..Style::default() }, &path).unwrap();
         fs::read(path).unwrap()
     };
     let brighter = Tone { exposure: 1.0, curve: ToneCurve::Reinhard };

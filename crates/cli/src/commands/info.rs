@@ -1,6 +1,7 @@
-//! `info`: what is in a point file, or in a scene and the point files it names.
+//! `info`: what is in a point file, in a scene and the point files it names, or in a picture.
 
 use crate::args::InfoArgs;
+use crate::commands::info_picture;
 use crate::console;
 use crate::errors::Failure;
 use crate::input::{self, Input, SceneValues};
@@ -18,6 +19,8 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let progress = Progress::new(&args.progress);
     let text = if input::is_scene_file(&args.file) {
         of_scene(args, &progress)?
+    } else if info_picture::is_picture(&args.file) {
+        info_picture::of(&args.file, args.json)?
     } else {
         let set = input::read_file(&args.file, &progress)?;
         let summary = summarize(&set, &progress);

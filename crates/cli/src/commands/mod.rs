@@ -2,8 +2,11 @@
 
 mod bench;
 mod check;
+mod compare;
+mod compare_report;
 mod devices;
 mod info;
+mod info_picture;
 mod render;
 
 use crate::args::{Arguments, Command};
@@ -19,11 +22,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Command::Check(args) => check::run(args)?,
         Command::Schema => console::result(&format!("{:#}\n", scene::json_schema()))?,
         Command::Devices => devices::run()?,
-        Command::Compare { .. } => {
-            return Err(Failure::usage(
-                "compare: not built yet; compare the EXR files with another tool",
-            ));
-        }
+        Command::Compare(args) => return compare::run(args),
     }
     Ok(Exit::Done)
 }

@@ -6,8 +6,8 @@ use crate::errors::Failure;
 use crate::input::{Input, SceneValues};
 use crate::progress::Progress;
 use crate::stats::{Measured, Row};
-use crate::{files, interrupt, memory};
-use film::{FileFormat, Tone};
+use crate::{files, interrupt, memory, provenance};
+use film::{FileFormat, Film, Provenance, Style, Tone};
 use plan::{Diagnostic, Plan};
 use points::Watch;
 use std::path::Path;
@@ -46,6 +46,9 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
              add -o FILE.png",
         );
     }
+    if args.half && !formats.contains(&FileFormat::Exr) {
+        progress.note("warning: --half is ignored, since it is for EXR files; add -o FILE.exr");
+    }
     with_engine(&args.device, |engine| render(args, &input, diagnostics, engine, &progress))
 }
 
@@ -70,6 +73,9 @@ fn render(
     for (name, count) in plan.names.iter().zip(&plan.isolated).filter(|(_, count)| **count > 0) {
         progress.note(&format!("object '{name}': dropped {count} isolated points"));
     }
+    let exr =
+        args.outputs.iter().any(|path| FileFormat::from_path(path).ok() == Some(FileFormat::Exr));
+    let provenance = exr.then(|| provenance::of(&plan, input, &sets, engine));
     drop(sets);
     let read = started.elapsed();
     let mut built = engine.build(&plan, progress)?;
@@ -77,7 +83,11 @@ fn render(
     let wall = started.elapsed();
     warn_of_missing_surfaces(&plan, &built, progress);
 
-    write_pictures(args, &plan, &frame, progress)?;
+    let provenance = provenance.as_ref().unwrap_or(plan.provenance());
+    if exr && args.half {
+        warn_of_bright_values(&frame.film, progress);
+    }
+    write_pictures(args, provenance, &frame, progress)?;
     if let Some(path) = &args.stats {
         let row = Row::new(&Measured {
             name: input.name(),
@@ -97,18 +107,31 @@ fn render(
 
 fn write_pictures(
     args: &RenderArgs,
-    plan: &Plan,
+    provenance: &Provenance,
     frame: &Frame,
     progress: &Progress,
 ) -> Result<(), Failure> {
+    let style = Style { tone: args.tone(), half: args.half };
     progress.stage("writing pictures", args.outputs.len() as u64);
     for (output, written) in args.outputs.iter().zip(1..) {
-        let (film, provenance) = (&frame.film, plan.provenance());
-        interrupt::writing(|| Ok(film::write_toned(film, provenance, args.tone(), output)?))?;
+        let film = &frame.film;
+        interrupt::writing(|| Ok(film::write_styled(film, provenance, style, output)?))?;
         progress.done(written);
     }
     progress.clear();
     Ok(())
+}
+
+/// 16 bits end at 65504, far below what a light in view can have.
+fn warn_of_bright_values(film: &Film, progress: &Progress) {
+    let beyond = film::beyond_half(film);
+    if beyond > 0 {
+        progress.note(&format!(
+            "warning: --half: {beyond} values of R, G and B are beyond {}, the largest that 16 bits hold, \
+             and were written as that; leave --half out to keep them",
+            film::HALF_MAX
+        ));
+    }
 }
 
 /// An object of one point, or of coinciding ones, is no error, but surely not what was meant.

@@ -1,7 +1,10 @@
 //! The binary from outside: what it prints, writes and exits with. No Vulkan device is needed.
 #![forbid(unsafe_code)]
-#![allow(clippy::expect_used, reason = "a test fails by panicking")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(clippy::print_stderr, reason = "a test says what it skips")]
 
+mod compare;
+mod headers;
 mod inspect;
 mod render;
 mod signals;

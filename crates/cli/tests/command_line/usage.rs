@@ -153,8 +153,6 @@ fn up_is_for_views_that_are_chosen() {
 #[test]
 fn what_is_not_built_says_so() {
     let folder = Folder::new();
-    run_in(folder.path(), &["compare", "a.exr", "b.exr", "--max-abs", "0.1"])
-        .fails_with(2, &["compare", "not built yet"]);
     run_in(folder.path(), &["bench"]).fails_with(2, &["not built yet"]);
     run_in(folder.path(), &["bench", "paper"]).fails_with(2, &["paper", "not built yet"]);
 }
