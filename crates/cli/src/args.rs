@@ -22,14 +22,14 @@ pub struct Arguments {
 pub enum Command {
     /// Render a scene file, or a point file as it is
     Render(RenderArgs),
-    /// Measure how long scenes take to render
+    /// Measure how long suites or scenes take to render, and what changed since
     Bench(BenchArgs),
     /// Say what is in a point file, a scene file, or a picture
     Info(InfoArgs),
     /// Validate a scene without rendering it
     Check(CheckArgs),
-    /// Print the JSON Schema of scene files
-    Schema,
+    /// Print the JSON Schema of scene files, of suites, or of what `bench` writes
+    Schema(SchemaArgs),
     /// List the Vulkan devices, and say which is the default and why
     Devices,
     /// Say how far two pictures are apart, and whether that is too far
@@ -78,25 +78,59 @@ pub struct RenderArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(
+    after_help = "Suites are TOML files below scenes/bench/, part of the program too: --list names them. \
+    Rows whose models are missing, or that do not fit into memory, are skipped and said to be. Times are \
+    medians of --runs frames after one to warm up, with the least and the largest. --compare calls a time \
+    faster or slower where the two ranges from least to largest do not meet; one that was measured once \
+    is taken to vary by a quarter. Exit codes: 0 done, 1 --compare found a changed picture, or a frame or \
+    a build that got slower beyond its spread, 2 usage or input at fault, 4 the device or the machine ran \
+    out, 130 interrupted."
+)]
 pub struct BenchArgs {
-    /// Scene files or point files
-    #[arg(value_name = "SCENE")]
+    /// Suites, suite files, scene files or point files [default: smoke]
+    #[arg(value_name = "SUITE|SCENE")]
     pub scenes: Vec<PathBuf>,
+    /// List the suites and what they measure
+    #[arg(long)]
+    pub list: bool,
     /// Frames to time, after one to warm up
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub runs: u32,
+    /// Leave out rows of more generated points
+    #[arg(long, value_name = "N")]
+    pub max_points: Option<u32>,
     /// Write the results as JSON
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write the results as a Markdown table
+    /// Write the results as Markdown tables
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
+    /// Draw build and trace times over the number of points
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
+    /// Say what changed since an earlier run, whose --json this is
+    #[arg(long, value_name = "OLD.json")]
+    pub compare: Option<PathBuf>,
+    /// What a time may change by without being called a change, in percent of it
+    #[arg(long, value_name = "PERCENT", default_value_t = 5.0, value_parser = parse_percent, requires = "compare", allow_negative_numbers = true)]
+    pub tolerance: f64,
     #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]
     pub device: DeviceArgs,
     #[command(flatten)]
     pub progress: ProgressArgs,
+}
+
+#[derive(Debug, Args)]
+pub struct SchemaArgs {
+    /// Of what `bench --json` writes instead
+    #[arg(long, conflicts_with = "suite")]
+    pub bench: bool,
+    /// Of suites of benchmarks instead
+    #[arg(long)]
+    pub suite: bool,
 }
 
 #[derive(Debug, Args)]
@@ -213,6 +247,13 @@ pub enum Curve {
     Aces,
 }
 
+impl BenchArgs {
+    /// What is to be timed.
+    pub fn asked(&self) -> Vec<PathBuf> {
+        if self.scenes.is_empty() { vec!["smoke".into()] } else { self.scenes.clone() }
+    }
+}
+
 impl RenderArgs {
     /// How 8-bit files are made.
     pub fn tone(&self) -> Tone {
@@ -269,6 +310,13 @@ fn parse_stops(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(stops) if (-100.0..=100.0).contains(&stops) => Ok(stops),
         _ => Err("expected a number from -100 to 100, e.g. 1.5".to_owned()),
+    }
+}
+
+fn parse_percent(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(percent) if (0.0..=1e6).contains(&percent) => Ok(percent),
+        _ => Err("expected a number of at least 0, e.g. 5".to_owned()),
     }
 }
 

@@ -9,7 +9,7 @@ use gpu::{Device, DeviceChoice, Instance, InstanceOptions};
 use kernels::layout::{FitOutcome, GridInfo};
 use plan::{Picture, Plan, Rays};
 use reference::Reference;
-use render::Renderer;
+use render::{Renderer, Traversal};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -32,6 +32,8 @@ pub struct Built {
     surfaces: BuiltOn,
     /// How long that took.
     pub duration: Duration,
+    /// What of it the driver took to make pipelines; zero on the CPU.
+    pub pipelines: Duration,
 }
 
 enum BuiltOn {
@@ -58,6 +60,8 @@ pub struct Frame {
     pub wall: Duration,
     /// Milliseconds of each kernel.
     pub kernels: Vec<(&'static str, f64)>,
+    /// What of it traversal took, by kind of rays.
+    pub traversal: Traversal,
 }
 
 /// Opens the engine that was asked for, and lets `work` use it. What the validation layer has to say
@@ -119,6 +123,7 @@ impl Engine {
     /// Fits the surfaces and builds the grid.
     pub fn build(&self, plan: &Plan, progress: &Progress) -> Result<Built, Failure> {
         let started = Instant::now();
+        let pipelines = self.pipeline_time();
         let surfaces = interrupt::held(|| {
             Ok(match self {
                 Self::Gpu(device) => BuiltOn::Gpu(Box::new(Renderer::new(device, plan, progress)?)),
@@ -127,7 +132,18 @@ impl Engine {
             })
         });
         progress.clear();
-        Ok(Built { surfaces: surfaces?, duration: started.elapsed() })
+        Ok(Built {
+            surfaces: surfaces?,
+            duration: started.elapsed(),
+            pipelines: self.pipeline_time().saturating_sub(pipelines),
+        })
+    }
+
+    fn pipeline_time(&self) -> Duration {
+        match self {
+            Self::Gpu(device) => device.pipeline_time(),
+            Self::Reference | Self::ReferenceF64 => Duration::ZERO,
+        }
     }
 }
 
@@ -153,6 +169,7 @@ impl Built {
                     trace: stats.trace,
                     wall: started.elapsed(),
                     kernels: stats.kernels,
+                    traversal: stats.traversal,
                 })
             }
             BuiltOn::Single(reference) => {
@@ -199,6 +216,12 @@ impl Built {
 }
 
 impl Frame {
+    /// Milliseconds of all kernels, where the device has a clock.
+    pub fn gpu_ms(&self) -> Option<f64> {
+        let sum: f64 = self.kernels.iter().map(|kernel| kernel.1).sum();
+        (sum > 0.0).then_some(sum)
+    }
+
     fn of_reference(picture: Picture, started: Instant) -> Self {
         let elapsed = started.elapsed();
         let (hits, tests, rays) = (picture.hits, picture.tests, picture.rays);
@@ -212,6 +235,7 @@ impl Frame {
             trace: elapsed,
             wall: elapsed,
             kernels: Vec::new(),
+            traversal: Traversal::default(),
         }
     }
 }

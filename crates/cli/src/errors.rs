@@ -19,8 +19,10 @@ pub enum Exit {
     Usage,
     /// 3: no usable Vulkan device.
     NoDevice,
-    /// 4: the device or the machine ran out (memory, lost device, disk full), or a bug was met.
+    /// 4: the device or the machine ran out (memory, disk full), or a bug was met.
     Exhausted,
+    /// 4 too: the device was lost, and with it all that is still to be done on it.
+    Lost,
     /// 130: interrupted, as shells report SIGINT.
     Interrupted,
 }
@@ -33,7 +35,7 @@ impl Exit {
             Self::Difference => 1,
             Self::Usage => 2,
             Self::NoDevice => 3,
-            Self::Exhausted => 4,
+            Self::Exhausted | Self::Lost => 4,
             Self::Interrupted => 130,
         }
     }
@@ -72,6 +74,14 @@ impl Failure {
             line.push_str("; or render on the CPU, without Vulkan, with --device reference");
         }
         Self { exit: Exit::NoDevice, lines: vec![line] }
+    }
+
+    /// The same failure, said to be of something.
+    pub fn of(mut self, what: &str) -> Self {
+        for line in &mut self.lines {
+            *line = format!("{what}: {line}");
+        }
+        self
     }
 
     fn new(exit: Exit, error: &dyn Error) -> Self {
@@ -115,6 +125,7 @@ impl From<RenderError> for Failure {
         match error {
             RenderError::Interrupted => Self::interrupted(),
             error @ RenderError::Images { .. } => Self::new(Exit::Exhausted, &error),
+            RenderError::Gpu(error @ GpuError::DeviceLost { .. }) => Self::new(Exit::Lost, &error),
             // The device was open already, so it is the device that gave up.
             RenderError::Gpu(error) => Self::new(Exit::Exhausted, &error),
         }

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A scene, from a scene file or around a point file.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Input {
     /// As typed.
     pub path: PathBuf,
@@ -39,22 +39,28 @@ impl SceneValues {
 
     /// `--set`, `--size` and `--cells-per-pass`.
     pub fn new(overrides: &Overrides) -> Self {
-        let mut values = Self::set(&overrides.set);
+        let mut values = Self::default();
+        values.append(overrides);
+        values
+    }
+
+    /// The same over what there is already.
+    pub fn append(&mut self, overrides: &Overrides) {
+        self.entries.extend(Self::set(&overrides.set).entries);
         if let Some(size) = overrides.size {
-            values.add(
+            self.add(
                 "image.size",
                 &format!("[{}, {}]", size.0, size.1),
                 &format!("--size {}x{}", size.0, size.1),
             );
         }
         if let Some(cells) = overrides.cells_per_pass {
-            values.add(
+            self.add(
                 "render.cells_per_pass",
                 &cells.to_string(),
                 &format!("--cells-per-pass {cells}"),
             );
         }
-        values
     }
 
     /// One option.
@@ -62,7 +68,8 @@ impl SceneValues {
         self.entries.push((format!("{path}={value}"), Some(option.to_owned())));
     }
 
-    fn as_set(&self) -> Vec<String> {
+    /// As the scene takes them.
+    pub fn as_set(&self) -> Vec<String> {
         self.entries.iter().map(|entry| entry.0.clone()).collect()
     }
 

@@ -40,6 +40,8 @@ enum Style {
 
 #[derive(Default)]
 struct State {
+    /// What the stages are of, where there are several such.
+    task: String,
     stage: Option<Stage>,
     bar: Option<ProgressBar>,
     closed: bool,
@@ -74,6 +76,16 @@ impl Progress {
     /// Ends the stage: nothing of it stays on a terminal.
     pub fn clear(&self) {
         self.shared.lock().end_stage();
+    }
+
+    /// Names what the next stages are of, until another is named.
+    pub fn task(&self, name: &str) {
+        let mut state = self.shared.lock();
+        state.end_stage();
+        state.task = format!("{name}: ");
+        if self.shared.style == Style::Lines {
+            console::note(name);
+        }
     }
 
     /// Says something on stderr, unless `--quiet`.
@@ -144,13 +156,13 @@ impl State {
         if style == Style::Lines {
             stage.due += PATIENCE;
             let percent = 100.0 * stage.done as f64 / stage.total.max(1) as f64;
-            console::note(&format!("{}: {percent:.0} %", stage.name));
+            console::note(&format!("{}{}: {percent:.0} %", self.task, stage.name));
             return;
         }
         let bar = self.bar.get_or_insert_with(|| {
             let bar =
                 ProgressBar::with_draw_target(Some(stage.total), ProgressDrawTarget::stderr());
-            bar.with_style(bar_style()).with_message(stage.name)
+            bar.with_style(bar_style()).with_message(format!("{}{}", self.task, stage.name))
         });
         bar.set_position(stage.done);
         bar.tick();

@@ -4,24 +4,44 @@ use crate::engine::{Built, Engine, Frame};
 use film::Film;
 use kernels::layout::{FIT_FULL, FIT_INCOMPLETE, FIT_NO_SURFACE, FIT_PLANE};
 use plan::Plan;
-use serde::Serialize;
+use render::Traversal;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// One scene on one engine. Times are milliseconds.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Row {
-    /// Stem of the scene's file.
+    /// Stem of the scene's file, or the name of a suite's row.
     pub name: String,
+    /// The suite.
+    pub suite: Option<String>,
     /// From submission to completion of all passes of a frame, shading included.
     pub trace_ms: Spread,
     /// `render`: from reading points to the picture; `bench`: a frame with its picture read back.
     pub wall_ms: Spread,
+    /// Time of all kernels of a frame by the device's own clock, where it has one.
+    pub gpu_ms: Option<Spread>,
     /// Fitting surfaces and building the grid.
     pub build_ms: Spread,
+    /// How many builds that is of. Where there are several, the first is not among them.
+    pub builds: u32,
+    /// What of the first build the driver took to make pipelines.
+    pub pipelines_ms: f64,
+    /// The frame before those that are timed, with what the driver compiles at a first dispatch.
+    pub warm_up_ms: Option<f64>,
+    /// Frames a second, by the median.
+    pub frames_per_second: f64,
+    /// Frames a second that the paper states.
+    pub paper_frames_per_second: Option<f64>,
     /// Rays by kind.
     pub rays: Rays,
+    /// How fast they are.
+    pub rays_per_second: RaysPerSecond,
+    /// Cells a ray may cross in a pass; 0: as many as it likes.
+    pub cells_per_pass: u32,
     /// Dispatches of the traversal.
     pub passes: u32,
     /// Points that a ray was tested against, on average.
@@ -51,7 +71,7 @@ pub struct Row {
 }
 
 /// Some durations.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Spread {
     /// The middle one, or the mean of the two in the middle.
     pub median: f64,
@@ -62,7 +82,7 @@ pub struct Spread {
 }
 
 /// Rays by kind.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub struct Rays {
     /// From the camera.
     pub camera: u64,
@@ -74,8 +94,22 @@ pub struct Rays {
     pub refracted: u64,
 }
 
+/// Rays a second. By kind: over the device's time for the traversal of that kind alone; null where there are
+/// no such rays, or the device has no clock.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct RaysPerSecond {
+    /// All rays over the median of the whole frame, shading included.
+    pub all: f64,
+    /// From the camera.
+    pub camera: Option<f64>,
+    /// Towards lights.
+    pub shadow: Option<f64>,
+    /// Reflected and refracted ones, which are traced together.
+    pub scattered: Option<f64>,
+}
+
 /// How the fits of all points ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Fits {
     /// The polynomial with linear terms.
     pub full: u64,
@@ -88,7 +122,7 @@ pub struct Fits {
 }
 
 /// The uniform grid.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub struct Grid {
     /// Cells along each axis.
     pub resolution: [u32; 3],
@@ -124,17 +158,28 @@ impl Row {
         let Measured { engine, plan, built, frame, .. } = *measured;
         let points = plan.point_count;
         let grid = built.grid();
+        let trace_ms = Spread::of(measured.trace);
+        let rays = Rays {
+            camera: frame.rays.camera,
+            shadow: frame.rays.shadow,
+            reflected: frame.rays.reflected,
+            refracted: frame.rays.refracted,
+        };
         Self {
             name: measured.name.clone(),
-            trace_ms: Spread::of(measured.trace),
+            suite: None,
+            trace_ms,
             wall_ms: Spread::of(measured.wall),
+            gpu_ms: frame.gpu_ms().map(|ms| Spread { median: ms, min: ms, max: ms }),
             build_ms: Spread::of(&[built.duration]),
-            rays: Rays {
-                camera: frame.rays.camera,
-                shadow: frame.rays.shadow,
-                reflected: frame.rays.reflected,
-                refracted: frame.rays.refracted,
-            },
+            builds: 1,
+            pipelines_ms: milliseconds(built.pipelines),
+            warm_up_ms: None,
+            frames_per_second: 1e3 / trace_ms.median.max(1e-6),
+            paper_frames_per_second: None,
+            rays,
+            rays_per_second: RaysPerSecond::new(&rays, trace_ms.median, &frame.traversal),
+            cells_per_pass: plan.cells_per_pass,
             passes: frame.passes,
             tests_per_ray: frame.tests as f64 / frame.rays.all().max(1) as f64,
             bytes_per_point: (built.bytes() + plan.volumes.bytes()) as f64 / points.max(1) as f64,
@@ -152,11 +197,35 @@ impl Row {
     }
 }
 
+/// A duration in the unit of rows.
+pub fn milliseconds(duration: Duration) -> f64 {
+    1e3 * duration.as_secs_f64()
+}
+
+impl RaysPerSecond {
+    /// From counts, the milliseconds of a frame, and those of its traversal.
+    pub fn new(rays: &Rays, frame: f64, traversal: &Traversal) -> Self {
+        let scattered = rays.reflected + rays.refracted;
+        let all = rays.camera + rays.shadow + scattered;
+        let per_second =
+            |count: u64, ms: f64| (count > 0 && ms > 0.0).then(|| 1e3 * count as f64 / ms);
+        Self {
+            all: per_second(all, frame).unwrap_or(0.0),
+            camera: per_second(rays.camera, traversal.camera),
+            shadow: per_second(rays.shadow, traversal.shadow),
+            scattered: per_second(scattered, traversal.scattered),
+        }
+    }
+}
+
 impl Spread {
     /// Of at least one duration.
     pub fn of(durations: &[Duration]) -> Self {
-        let mut sorted: Vec<f64> =
-            durations.iter().map(|duration| 1e3 * duration.as_secs_f64()).collect();
+        Self::of_milliseconds(durations.iter().copied().map(milliseconds).collect())
+    }
+
+    /// The same of numbers.
+    pub fn of_milliseconds(mut sorted: Vec<f64>) -> Self {
         sorted.sort_by(f64::total_cmp);
         let (Some(&min), Some(&max)) = (sorted.first(), sorted.last()) else {
             return Self { median: 0.0, min: 0.0, max: 0.0 };

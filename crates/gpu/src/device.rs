@@ -14,7 +14,9 @@ use gpu_allocator::vulkan::{
 use gpu_allocator::{AllocationError, AllocationSizes, AllocatorDebugSettings, MemoryLocation};
 use std::ffi::{CString, c_char};
 use std::fmt;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 const MIB: u64 = 1 << 20;
 
@@ -48,6 +50,8 @@ pub struct Device {
     info: DeviceInfo,
     limits: Limits,
     debug: Option<ext::debug_utils::Device>,
+    /// Nanoseconds that the driver took to make pipelines.
+    pipeline_nanos: AtomicU64,
     queue: Mutex<Queue>,
     /// `None` only while the device is being made or dropped.
     allocator: Mutex<Option<Allocator>>,
@@ -105,6 +109,7 @@ impl Device {
             vk_limits,
             info,
             debug,
+            pipeline_nanos: AtomicU64::new(0),
             queue: Mutex::new(Queue::new(queue)),
             allocator: Mutex::new(None),
             instance: Arc::clone(instance),
@@ -138,6 +143,18 @@ impl Device {
     /// What it can.
     pub fn limits(&self) -> &Limits {
         &self.limits
+    }
+
+    /// How long the driver has taken to make pipelines since the device was opened. Some drivers compile
+    /// at the first dispatch, which is not in it.
+    pub fn pipeline_time(&self) -> Duration {
+        Duration::from_nanos(self.pipeline_nanos.load(Ordering::Relaxed))
+    }
+
+    /// Adds to [`pipeline_time`](Self::pipeline_time).
+    pub(crate) fn add_pipeline_time(&self, time: Duration) {
+        let nanos = u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
+        self.pipeline_nanos.fetch_add(nanos, Ordering::Relaxed);
     }
 
     /// The instance it belongs to.

@@ -11,6 +11,7 @@ use crate::spirv::{Module, ResourceKind};
 use ash::vk;
 use std::fmt;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// What a kernel expects at a binding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -163,6 +164,7 @@ impl KernelInner {
     }
 
     fn create_pipeline(&mut self, spirv: &[u32], module: &Module) -> Result<(), GpuError> {
+        let started = Instant::now();
         let raw = &self.device.raw;
         let info = vk::ShaderModuleCreateInfo::default().code(spirv);
         // SAFETY: the caller of `Kernel::new` gives a valid module, whose head was read.
@@ -185,6 +187,7 @@ impl KernelInner {
         let pipelines = created.map_err(|(_, result)| failed(result))?;
         let pipeline = pipelines.first().copied();
         self.pipeline = pipeline.ok_or_else(|| failed(vk::Result::ERROR_UNKNOWN))?;
+        self.device.add_pipeline_time(started.elapsed());
         self.device.set_name(self.pipeline, self.name);
         Ok(())
     }

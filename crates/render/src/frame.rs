@@ -52,6 +52,33 @@ pub struct FrameStats {
     rays: u64,
     /// GPU time of each kernel, in milliseconds, by name, in the order of first use.
     pub kernels: Vec<(&'static str, f64)>,
+    /// What of it `grid_trace` and `disc_trace` took.
+    pub traversal: Traversal,
+}
+
+/// GPU time of traversal by kind of rays, in milliseconds; all zero where the device has no timestamps.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Traversal {
+    /// From the camera.
+    pub camera: f64,
+    /// From surfaces towards lights.
+    pub shadow: f64,
+    /// Reflected and refracted ones, which share their waves.
+    pub scattered: f64,
+}
+
+impl Traversal {
+    /// Adds what the traversal among these passes took.
+    fn add(&mut self, traced: Traced, passes: &[(&'static str, f64)]) {
+        let traversal = |pass: &&(&str, f64)| [GridTrace::NAME, DiscTrace::NAME].contains(&pass.0);
+        let milliseconds: f64 = passes.iter().filter(traversal).map(|pass| pass.1).sum();
+        match traced {
+            Traced::ByDiscs(_) | Traced::Camera => self.camera += milliseconds,
+            Traced::Shadows => self.shadow += milliseconds,
+            Traced::Scattered => self.scattered += milliseconds,
+            Traced::PastObject(_) => {} // rays from points, which no count of rays has
+        }
+    }
 }
 
 impl FrameStats {
@@ -357,7 +384,9 @@ impl Renderer {
                     self.passes.grid_trace.record(&mut self.recorder, io, from, &params);
                 }
             }
-            stats.add_kernels(&self.recorder.submit()?.passes);
+            let timings = self.recorder.submit()?;
+            stats.add_kernels(&timings.passes);
+            stats.traversal.add(traced, &timings.passes);
             if params.listed == 0 {
                 state.swap();
             }

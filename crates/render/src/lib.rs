@@ -15,7 +15,7 @@ mod volumes;
 mod wave;
 
 pub use discs::DiscLists;
-pub use frame::{FrameStats, Renderer};
+pub use frame::{FrameStats, Renderer, Traversal};
 pub use passes::Records;
 pub use points::device::BuildError;
 

@@ -251,6 +251,19 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
                 Ok(())
             }
         }
+        (Kind::List { of, max }, Value::List(items)) => {
+            if items.is_empty() || items.len() > *max {
+                return Err(by_example());
+            }
+            for (index, item) in items.iter().enumerate() {
+                list_item(item, of).map_err(|message| Wrong {
+                    within: format!("[{index}]"),
+                    origin: item.origin,
+                    message,
+                })?;
+            }
+            Ok(())
+        }
         (Kind::Either(kinds), value) => {
             let same_type = |kind: &&Kind| {
                 matches!(
@@ -272,6 +285,21 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
         }
         _ => Err(by_example()),
     }
+}
+
+/// One value of a list.
+fn list_item(item: &Node, of: &Kind) -> Result<(), String> {
+    let advice = match (of, &item.value) {
+        (Kind::Integer { min, max, .. }, Value::Integer(found)) => {
+            match within(*found as f64, *min as f64, *max as f64) {
+                Ok(()) => return Ok(()),
+                Err(advice) => advice,
+            }
+        }
+        (Kind::Text(_), Value::Text(found)) if !found.trim().is_empty() => return Ok(()),
+        _ => "replace it",
+    };
+    Err(format!("found {}, expected {}; {advice}", item.shown, of.expected()))
 }
 
 fn or_default(key: &Key) -> String {
@@ -383,5 +411,6 @@ mod tests {
             }
         }
         visit(&SCENE);
+        visit(&crate::suite_keys::SUITE);
     }
 }

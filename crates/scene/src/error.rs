@@ -56,6 +56,12 @@ impl SceneError {
         Self { lines }
     }
 
+    /// Whether all that is wrong is that models are missing which the repository does not have: see
+    /// [`MODELS_VARIABLE`](crate::MODELS_VARIABLE).
+    pub fn lacks_models_alone(&self) -> bool {
+        self.lines.iter().all(|line| line.contains(crate::MODELS_VARIABLE))
+    }
+
     /// The problems, one line each, at least one.
     pub fn lines(&self) -> &[String] {
         &self.lines

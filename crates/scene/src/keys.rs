@@ -89,6 +89,11 @@ pub(crate) enum Kind {
         /// The path of a file that has them under the same key will do.
         in_file: bool,
     },
+    /// One value or more that are no tables.
+    List {
+        of: &'static Kind,
+        max: usize,
+    },
     /// Announced for later, form not fixed.
     Announced,
 }
@@ -106,7 +111,7 @@ const LARGE: f64 = 1e15;
 /// Shortest length that counts as one.
 pub(crate) const SHORT: f64 = 1e-12;
 
-const fn numbers(min: f64, max: f64, unit: &'static str) -> Numbers {
+pub(crate) const fn numbers(min: f64, max: f64, unit: &'static str) -> Numbers {
     Numbers { min, max, unit }
 }
 
@@ -115,7 +120,7 @@ const RADIANCE: Kind = Kind::Vector(numbers(0.0, LARGE, "W sr⁻¹ m⁻², linea
 const SHARE: Kind = Kind::Vector(numbers(0.0, 1.0, "in linear RGB"));
 const LENGTH: Kind = Kind::Number(numbers(SHORT, LARGE, "scene units"));
 
-const fn key(name: &'static str, kind: Kind, absent: Absent, doc: &'static str) -> Key {
+pub(crate) const fn key(name: &'static str, kind: Kind, absent: Absent, doc: &'static str) -> Key {
     Key { name, kind, absent, doc, only: None }
 }
 
@@ -133,7 +138,7 @@ const fn announced(name: &'static str, doc: &'static str) -> Key {
     key(name, Kind::Announced, Words("none", "0"), doc)
 }
 
-const fn count(min: i64, max: i64, unit: &'static str) -> Kind {
+pub(crate) const fn count(min: i64, max: i64, unit: &'static str) -> Kind {
     Kind::Integer { min, max, unit }
 }
 
@@ -763,6 +768,7 @@ impl Kind {
             }
             Kind::Tables { min: 0, max, .. } => format!("a list of up to {max} tables"),
             Kind::Tables { min, max, .. } => format!("a list of {min} to {max} tables"),
+            Kind::List { of, max } => format!("a list of 1 to {max}, each {}", of.expected()),
             Kind::Announced => "a value whose form is not fixed yet".into(),
         }
     }

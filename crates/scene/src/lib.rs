@@ -18,6 +18,8 @@ mod read;
 mod scene;
 mod schema;
 mod settings;
+mod suite;
+mod suite_keys;
 mod transfer_file;
 mod transform;
 mod whole;
@@ -35,5 +37,6 @@ pub use scene::{
     Primary, Projection, RayLoop, Refine, RenderSettings, Scene, Stop, Surface, TextureAxis,
     Transfer, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
 };
-pub use schema::json_schema;
+pub use schema::{json_schema, suite_json_schema};
+pub use suite::{Shape, Suite, SuiteRow};
 pub use transform::Transform;

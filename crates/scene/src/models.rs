@@ -1,6 +1,6 @@
 //! Where scenes find models that are not part of the repository.
 //!
-//! A path below `models/` that is not beside the scene file is looked for in the folder that
+//! A path below `models/` (or `../models/`) that is not beside the scene file is looked for in the folder that
 //! [`MODELS_VARIABLE`] names, first at the same place, then anywhere below it by name. So one folder of
 //! models serves all scenes, however it is arranged.
 
@@ -49,9 +49,13 @@ pub(crate) fn advice(written: &str, models: Option<&Path>) -> Option<String> {
     })
 }
 
-/// The path without `models/`, if it begins with that.
+/// The path without `models/`, if it begins with that, whatever folders above it starts from.
 fn below_models(written: &str) -> Option<&Path> {
-    let rest = Path::new(written).strip_prefix(PREFIX).ok()?;
+    let mut path = Path::new(written);
+    while let Ok(inner) = path.strip_prefix("..") {
+        path = inner;
+    }
+    let rest = path.strip_prefix(PREFIX).ok()?;
     rest.file_name().map(|_| rest)
 }
 
@@ -129,6 +133,8 @@ mod tests {
     #[test]
     fn advice_is_given_for_models_alone_and_names_file_variable_and_tool() {
         assert_eq!(advice("points/a.ply", None), None);
+        assert_eq!(advice("../a.ply", None), None);
+        assert_eq!(advice("../models/a.ply", None), advice("models/a.ply", None));
         assert_eq!(advice("models", None), None);
         for models in [None, Some(Path::new("there"))] {
             let advice = advice("models/a.ply", models).unwrap();

@@ -3,14 +3,24 @@
 use crate::document::{Origin, Value, parse_value};
 use crate::keys::{Absent, DIRECTION, Key, Kind, Numbers, SCENE, Table};
 use crate::not_built::not_built;
+use crate::suite_keys::SUITE;
 use serde_json::{Map, Value as Json, json};
 
 /// The JSON Schema (draft 2020-12) of scene files: every key, built or not; the descriptions say
 /// what is not built yet.
 pub fn json_schema() -> Json {
-    let mut schema = table(&SCENE, "");
+    schema_of(&SCENE, "pointillist scene")
+}
+
+/// The JSON Schema (draft 2020-12) of suites of benchmarks.
+pub fn suite_json_schema() -> Json {
+    schema_of(&SUITE, "pointillist benchmark suite")
+}
+
+fn schema_of(root: &Table, title: &str) -> Json {
+    let mut schema = table(root, "");
     schema.insert("$schema".into(), json!("https://json-schema.org/draft/2020-12/schema"));
-    schema.insert("title".into(), json!("pointillist scene"));
+    schema.insert("title".into(), json!(title));
     Json::Object(schema)
 }
 
@@ -101,6 +111,9 @@ fn kind(of: &Kind, path: &str) -> Map<String, Json> {
         })),
         Kind::Range(range) | Kind::Pair(range) => as_map(json!({
             "type": "array", "items": number(range), "minItems": 2, "maxItems": 2,
+        })),
+        Kind::List { of, max } => as_map(json!({
+            "type": "array", "items": kind(of, path), "minItems": 1, "maxItems": max,
         })),
         Kind::Prefixed(before, _) => as_map(json!({
             "type": "string", "pattern": format!("^{before}."),

@@ -1,188 +1,111 @@
-//! `bench`: how long frames take, on one engine, scene after scene.
-//!
-//! A scene is built once and one frame warms it up: drivers compile kernels at their first dispatch.
-//! Then frames are timed one after the other; the middle one counts.
+//! `bench`: how long frames take, on one engine, case after case.
 
 use crate::args::BenchArgs;
-use crate::console;
+use crate::bench::cases::{Case, Cases};
+use crate::bench::changes::Earlier;
+use crate::bench::measure::measure;
+use crate::bench::report::{Report, Skipped};
+use crate::bench::suites::{self, Suites};
+use crate::bench::{plot, table};
 use crate::engine::{Engine, with_engine};
-use crate::errors::Failure;
-use crate::input::{Input, SceneValues};
+use crate::errors::{Exit, Failure};
 use crate::progress::Progress;
-use crate::stats::{Measured, Row, pixel_hash};
-use crate::{files, memory};
-use serde::Serialize;
+use crate::{console, files};
 use std::fmt::Write;
-use std::fs;
 use std::path::Path;
 
-/// What `--json` writes.
-#[derive(Debug, Serialize)]
-struct Report {
-    device: String,
-    driver: String,
-    cpu: String,
-    version: &'static str,
-    /// What the binary was built from, where git knew.
-    commit: Option<&'static str>,
-    runs: u32,
-    rows: Vec<Row>,
-}
-
-/// Times every scene.
-pub fn run(args: &BenchArgs) -> Result<(), Failure> {
-    if args.scenes.is_empty() {
-        return Err(Failure::usage(
-            "bench: the suite of all scenes is not built yet; name scene files or point files",
-        ));
+/// Times all that was asked for. Whatever can be checked is checked before.
+pub fn run(args: &BenchArgs) -> Result<Exit, Failure> {
+    if args.list {
+        return console::result(&list()).map(|()| Exit::Done);
     }
-    if let Some(suite) =
-        args.scenes.iter().find(|path| path.extension().is_none() && !path.exists())
-    {
-        return Err(Failure::usage(format!(
-            "bench: found no file '{}', and named suites are not built yet; name scene files or \
-             point files",
-            suite.display()
-        )));
-    }
-    let outputs: Vec<&Path> =
-        args.json.iter().chain(&args.markdown).map(|path| path.as_path()).collect();
+    let outputs: Vec<&Path> = args
+        .json
+        .iter()
+        .chain(&args.markdown)
+        .chain(&args.plot)
+        .map(|path| path.as_path())
+        .collect();
     for output in &outputs {
         files::check_output(output)?;
     }
-    let values = SceneValues::new(&args.overrides);
-    let inputs: Vec<Input> = args
-        .scenes
-        .iter()
-        .map(|path| Input::load(path, &values, None))
-        .collect::<Result<_, _>>()?;
-    let all_inputs: Vec<&Path> = inputs.iter().flat_map(Input::files).collect();
-    files::check_distinct(&outputs, &all_inputs)?;
+    args.plot.as_deref().map_or(Ok(()), plot::check_path)?;
+    let earlier = args.compare.as_deref().map(Earlier::read).transpose()?;
+    let mut suites = Suites::default();
+    let cases = Cases::new(args, &mut suites)?;
+    let mut inputs: Vec<&Path> = cases.cases.iter().flat_map(|case| case.input.files()).collect();
+    inputs.extend(cases.suites.iter().chain(&args.compare).map(|path| path.as_path()));
+    files::check_distinct(&outputs, &inputs)?;
+
     let progress = Progress::new(&args.progress);
-    with_engine(&args.device, |engine| {
-        let report = Report {
-            device: engine.name(),
-            driver: engine.driver(),
-            cpu: cpu(),
-            version: env!("CARGO_PKG_VERSION"),
-            commit: option_env!("POINTILLIST_COMMIT"),
-            runs: args.runs,
-            rows: inputs
-                .iter()
-                .map(|input| measure(input, engine, args.runs, &progress))
-                .collect::<Result<_, _>>()?,
-        };
-        if let Some(path) = &args.json {
-            files::write_json(path, &report)?;
+    let mut report = with_engine(&args.device, |engine| {
+        let mut report = Report::new(engine, args.runs);
+        for skipped in &cases.skipped {
+            skip(skipped.clone(), &mut report, &progress);
         }
-        if let Some(path) = &args.markdown {
-            files::write(path, &markdown(&report))?;
+        for (case, number) in cases.cases.iter().zip(1..) {
+            progress.task(&format!("{number}/{} {}", cases.cases.len(), case.name));
+            time(case, engine, &mut report, &progress)?;
         }
-        console::result(&table(&report))
-    })
-}
-
-fn measure(input: &Input, engine: &Engine, runs: u32, progress: &Progress) -> Result<Row, Failure> {
-    memory::require_picture(input.window(None)?, &[], 0)?;
-    let sets = input.read_points(progress)?;
-    let dropped = sets.iter().map(|set| set.non_finite).sum();
-    let plan = input.plan(&sets, None, progress)?;
-    drop(sets);
-    let mut built = engine.build(&plan, progress)?;
-    let mut frame = built.frame(&plan, progress)?;
-    let pixels = pixel_hash(&frame.film);
-    let (mut trace, mut wall) = (Vec::new(), Vec::new());
-    for _ in 0..runs {
-        frame = built.frame(&plan, progress)?;
-        trace.push(frame.trace);
-        wall.push(frame.wall);
-        if pixel_hash(&frame.film) != pixels {
-            progress.note(&format!(
-                "warning: {}: two frames of the same scene differ, which is a bug of the device \
-                 or of pointillist; please report it",
-                input.path.display()
-            ));
-        }
+        Ok(report)
+    })?;
+    progress.clear();
+    report.comparison = earlier.map(|earlier| earlier.compare(&report, 0.01 * args.tolerance));
+    write(args, &report)?;
+    match report.comparison {
+        Some(comparison) if !comparison.pass => Ok(Exit::Difference),
+        _ => Ok(Exit::Done),
     }
-    Ok(Row::new(&Measured {
-        name: input.name(),
-        engine,
-        plan: &plan,
-        built: &built,
-        frame: &frame,
-        trace: &trace,
-        wall: &wall,
-        dropped,
-    }))
 }
 
-const COLUMNS: [&str; 8] =
-    ["scene", "points", "trace ms", "min", "max", "build ms", "tests/ray", "passes"];
-
-fn cells(row: &Row) -> [String; 8] {
-    [
-        row.name.clone(),
-        row.points.to_string(),
-        format!("{:.1}", row.trace_ms.median),
-        format!("{:.1}", row.trace_ms.min),
-        format!("{:.1}", row.trace_ms.max),
-        format!("{:.1}", row.build_ms.median),
-        format!("{:.1}", row.tests_per_ray),
-        row.passes.to_string(),
-    ]
-}
-
-fn heading(report: &Report) -> String {
-    let driver = match report.driver.as_str() {
-        "" => String::new(),
-        driver => format!(", {driver}"),
-    };
-    let commit = report.commit.map_or_else(String::new, |commit| format!(", commit {commit}"));
-    format!(
-        "{}{driver}; {}; pointillist {}{commit}; {} runs after one to warm up",
-        report.device, report.cpu, report.version, report.runs
-    )
-}
-
-fn table(report: &Report) -> String {
-    let rows: Vec<[String; 8]> = report.rows.iter().map(cells).collect();
-    let widths: Vec<usize> = COLUMNS
-        .iter()
-        .enumerate()
-        .map(|(column, title)| {
-            let longest = rows.iter().map(|row| row[column].chars().count()).max();
-            title.len().max(longest.unwrap_or(0))
-        })
-        .collect();
-    let mut text = format!("{}\n", heading(report));
-    let titles = COLUMNS.map(str::to_owned);
-    for row in std::iter::once(&titles).chain(&rows) {
-        let mut line = format!("{:<width$}", row[0], width = widths[0]);
-        for (cell, width) in row.iter().zip(&widths).skip(1) {
-            // Writing to a string cannot fail; nor below.
-            let _ = write!(line, "  {cell:>width$}");
+/// Adds one row; or, where a suite asks for more than the device or the machine has, says so.
+fn time(
+    case: &Case,
+    engine: &Engine,
+    report: &mut Report,
+    progress: &Progress,
+) -> Result<(), Failure> {
+    match (measure(case, engine, report.runs, progress), &case.suite) {
+        (Ok(row), _) => report.rows.push(row),
+        (Err(Failure { exit: Exit::Exhausted, lines }), Some(suite)) => {
+            let reason = format!("does not fit: {}", lines.join("; "));
+            let skipped = Skipped { name: case.name.clone(), suite: suite.clone(), reason };
+            skip(skipped, report, progress);
         }
-        text.push_str(line.trim_end());
-        text.push('\n');
+        (Err(failure), Some(_)) if failure.exit != Exit::Interrupted => {
+            return Err(failure.of(&case.name));
+        }
+        (Err(failure), _) => return Err(failure),
+    }
+    Ok(())
+}
+
+fn skip(skipped: Skipped, report: &mut Report, progress: &Progress) {
+    progress.note(&format!("warning: skipped '{}': {}", skipped.name, skipped.reason));
+    report.skipped.push(skipped);
+}
+
+/// Files first: a terminal that is gone must not cost the results.
+fn write(args: &BenchArgs, report: &Report) -> Result<(), Failure> {
+    if let Some(path) = &args.json {
+        files::write_json(path, report)?;
+    }
+    if let Some(path) = &args.markdown {
+        files::write(path, &table::markdown(report))?;
+    }
+    if let Some(path) = &args.plot {
+        files::write(path, &plot::svg(report)?)?;
+    }
+    console::result(&table::text(report))
+}
+
+fn list() -> String {
+    let suites = suites::known();
+    let width = suites.iter().map(|suite| suite.0.chars().count()).max().unwrap_or(0);
+    let mut text = String::new();
+    for (name, about) in suites {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{name:<width$}  {about}");
     }
     text
-}
-
-fn markdown(report: &Report) -> String {
-    let mut text = format!("{}\n\n| {} |\n", heading(report), COLUMNS.join(" | "));
-    let _ = writeln!(text, "|---|{}", "---:|".repeat(COLUMNS.len() - 1));
-    for row in &report.rows {
-        let _ = writeln!(text, "| {} |", cells(row).join(" | ").replace('\n', " "));
-    }
-    text
-}
-
-/// The processor's name, or at least its architecture.
-fn cpu() -> String {
-    let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = info.lines().find_map(|line| {
-        let (key, value) = line.split_once(':')?;
-        (key.trim() == "model name").then(|| value.trim().to_owned())
-    });
-    model.unwrap_or_else(|| std::env::consts::ARCH.to_owned())
 }

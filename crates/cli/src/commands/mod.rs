@@ -9,7 +9,8 @@ mod info;
 mod info_picture;
 mod render;
 
-use crate::args::{Arguments, Command};
+use crate::args::{Arguments, Command, SchemaArgs};
+use crate::bench::report;
 use crate::console;
 use crate::errors::{Exit, Failure};
 
@@ -17,12 +18,20 @@ use crate::errors::{Exit, Failure};
 pub fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     match &arguments.command {
         Command::Render(args) => render::run(args)?,
-        Command::Bench(args) => bench::run(args)?,
+        Command::Bench(args) => return bench::run(args),
         Command::Info(args) => info::run(args)?,
         Command::Check(args) => check::run(args)?,
-        Command::Schema => console::result(&format!("{:#}\n", scene::json_schema()))?,
+        Command::Schema(args) => console::result(&format!("{:#}\n", schema(args)))?,
         Command::Devices => devices::run()?,
         Command::Compare(args) => return compare::run(args),
     }
     Ok(Exit::Done)
+}
+
+fn schema(args: &SchemaArgs) -> serde_json::Value {
+    match (args.bench, args.suite) {
+        (true, _) => report::json_schema(),
+        (_, true) => scene::suite_json_schema(),
+        _ => scene::json_schema(),
+    }
 }

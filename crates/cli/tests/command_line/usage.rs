@@ -150,13 +150,6 @@ fn up_is_for_views_that_are_chosen() {
     render("camera.toml").fails_with(2, &["camera.toml", "--up", "[camera]"]);
 }
 
-#[test]
-fn what_is_not_built_says_so() {
-    let folder = Folder::new();
-    run_in(folder.path(), &["bench"]).fails_with(2, &["not built yet"]);
-    run_in(folder.path(), &["bench", "paper"]).fails_with(2, &["paper", "not built yet"]);
-}
-
 /// The loader is there or not; a driver is not.
 #[test]
 fn no_device_is_3_and_names_the_reference() {

@@ -1,0 +1,137 @@
+//! The list of what is timed, each scene of it checked.
+
+use crate::args::{BenchArgs, Overrides};
+use crate::bench::report::Skipped;
+use crate::bench::suites::{Asked, Suites};
+use crate::errors::Failure;
+use crate::input::{Input, SceneValues};
+use scene::{Scene, Shape, SuiteRow};
+use std::path::PathBuf;
+
+/// One row to be.
+pub struct Case {
+    /// In tables.
+    pub name: String,
+    /// The suite it is of.
+    pub suite: Option<String>,
+    /// What is timed, with its own points.
+    pub input: Input,
+    /// Points to be made instead of the first object's.
+    pub generated: Option<(Shape, u32)>,
+    /// Milliseconds a frame that the paper states.
+    pub paper_ms: Option<f64>,
+}
+
+/// What is to be done, and what cannot be.
+#[derive(Default)]
+pub struct Cases {
+    /// In the order of tables.
+    pub cases: Vec<Case>,
+    /// Rows whose models are missing, or that are over `--max-points`.
+    pub skipped: Vec<Skipped>,
+    /// Files of suites, which are inputs too.
+    pub suites: Vec<PathBuf>,
+}
+
+impl Cases {
+    /// All that the command line asks for. What is wrong with any of it is found here; models that are
+    /// missing are no fault of a suite's.
+    pub fn new(args: &BenchArgs, suites: &mut Suites) -> Result<Self, Failure> {
+        let mut cases = Self::default();
+        for asked in args.asked() {
+            match suites.find(&asked)? {
+                Asked::Scene(path) => cases.add_scene(path, &args.overrides)?,
+                Asked::Suite(name, suite) => {
+                    cases.suites.push(asked);
+                    for row in &suite.rows {
+                        cases.add_row(&name, row, args, suites)?;
+                    }
+                }
+            }
+        }
+        Ok(cases)
+    }
+
+    fn add_scene(&mut self, path: PathBuf, overrides: &Overrides) -> Result<(), Failure> {
+        let values = SceneValues::new(overrides);
+        let input = Input::load(&path, &values, None)?;
+        let name = input.name();
+        self.cases.push(Case { name, suite: None, input, generated: None, paper_ms: None });
+        Ok(())
+    }
+
+    /// A case for each of the row's point counts and numbers of cells.
+    fn add_row(
+        &mut self,
+        suite: &str,
+        row: &SuiteRow,
+        args: &BenchArgs,
+        suites: &Suites,
+    ) -> Result<(), Failure> {
+        for count in each(&row.point_counts) {
+            for cells in each(&row.cells_per_pass) {
+                let mut name = row.name.clone();
+                let mut values = SceneValues::set(&row.set);
+                if let Some(count) = count {
+                    name += &format!(", {count} points");
+                }
+                if let Some(cells) = cells {
+                    name += &match cells {
+                        0 => ", K = all".to_owned(),
+                        cells => format!(", K = {cells}"),
+                    };
+                    values.add(
+                        "render.cells_per_pass",
+                        &cells.to_string(),
+                        &format!("cells_per_pass = {cells}"),
+                    );
+                }
+                values.append(&args.overrides);
+                let skipped = |reason| Skipped { name: name.clone(), suite: suite.into(), reason };
+                if let (Some(count), Some(most)) = (count, args.max_points)
+                    && count > most
+                {
+                    let reason = format!("more than the {most} points of --max-points");
+                    self.skipped.push(skipped(reason));
+                    continue;
+                }
+                if let Some(reason) = missing_model(row, &values, suites) {
+                    self.skipped.push(skipped(reason));
+                    continue;
+                }
+                let input = Input::load(&row.scene, &values, None).map_err(|failure| {
+                    suites.failure(failure.of(&format!("{suite}: row '{}'", row.name)))
+                })?;
+                self.cases.push(Case {
+                    name,
+                    suite: Some(suite.to_owned()),
+                    input,
+                    generated: row.generate.zip(count),
+                    paper_ms: row.paper_ms,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Each value, or once none.
+fn each(values: &[u32]) -> Vec<Option<u32>> {
+    match values {
+        [] => vec![None],
+        values => values.iter().copied().map(Some).collect(),
+    }
+}
+
+/// Why the scene of a row lacks its models, and what to do, if that is all that is wrong with it.
+fn missing_model(row: &SuiteRow, values: &SceneValues, suites: &Suites) -> Option<String> {
+    let error = Scene::load(&row.scene, &values.as_set()).err()?;
+    if !error.lacks_models_alone() {
+        return None;
+    }
+    let reason = suites.as_written(&error.lines().join("; "));
+    Some(match &row.if_missing {
+        Some(advice) => format!("{reason}; {advice}"),
+        None => reason,
+    })
+}

@@ -1,0 +1,163 @@
+//! Times one case.
+//!
+//! A scene is built, and one frame warms it up: drivers compile kernels at their first dispatch. Then
+//! frames are timed one after the other. Builds are repeated as often, but not for long.
+
+use crate::bench::cases::Case;
+use crate::bench::generated;
+use crate::engine::{Built, Engine};
+use crate::errors::Failure;
+use crate::input::Input;
+use crate::progress::Progress;
+use crate::stats::{Measured, RaysPerSecond, Row, Spread, milliseconds, pixel_hash};
+use crate::{interrupt, memory};
+use plan::Plan;
+use render::Traversal;
+use std::time::{Duration, Instant};
+
+/// Builds are repeated within this time, so that those of a million points are timed once.
+const BUILDING: Duration = Duration::from_secs(5);
+
+/// The row of a case: `runs` frames after one to warm up.
+pub fn measure(
+    case: &Case,
+    engine: &Engine,
+    runs: u32,
+    progress: &Progress,
+) -> Result<Row, Failure> {
+    // Held, so that temporary files are removed before an interruption ends the process.
+    interrupt::held(|| match case.generated {
+        None => timed(case, &case.input, engine, runs, progress),
+        Some((shape, count)) => {
+            memory::require_points(u64::from(count))?;
+            let folder = tempfile::Builder::new()
+                .prefix("pointillist-bench-")
+                .tempdir()
+                .map_err(|error| Failure::exhausted(format!("temporary folder: {error}")))?;
+            let name = format!("{shape:?}-{count}.ply").to_lowercase();
+            let path = folder.path().join(&name);
+            generated::write(&path, shape, count, progress)?;
+            let mut input = case.input.clone();
+            if let Some(object) = input.scene.objects.first_mut() {
+                object.points = path;
+                object.points_as_written = name;
+            }
+            timed(case, &input, engine, runs, progress)
+        }
+    })
+}
+
+fn timed(
+    case: &Case,
+    input: &Input,
+    engine: &Engine,
+    runs: u32,
+    progress: &Progress,
+) -> Result<Row, Failure> {
+    memory::require_picture(input.window(None)?, &[], 0)?;
+    let sets = input.read_points(progress)?;
+    go_on()?;
+    let dropped = sets.iter().map(|set| set.non_finite).sum();
+    let plan = input.plan(&sets, None, progress)?;
+    drop(sets);
+    go_on()?;
+    let (mut built, builds) = build(engine, &plan, runs, progress)?;
+    let warm_up = built.built.frame(&plan, progress)?;
+    let pixels = pixel_hash(&warm_up.film);
+    let warm_up_ms = milliseconds(warm_up.wall);
+    let mut frame = warm_up;
+    let mut times = Times::default();
+    for _ in 0..runs {
+        frame = built.built.frame(&plan, progress)?;
+        times.trace.push(frame.trace);
+        times.wall.push(frame.wall);
+        times.gpu.extend(frame.gpu_ms());
+        times.traversal.push(frame.traversal);
+        if pixel_hash(&frame.film) != pixels {
+            progress.note(&format!(
+                "warning: {}: two frames of the same scene differ, which is a bug of the device \
+                 or of pointillist; please report it",
+                case.name
+            ));
+        }
+    }
+    let row = Row::new(&Measured {
+        name: case.name.clone(),
+        engine,
+        plan: &plan,
+        built: &built.built,
+        frame: &frame,
+        trace: &times.trace,
+        wall: &times.wall,
+        dropped,
+    });
+    Ok(Row {
+        suite: case.suite.clone(),
+        gpu_ms: (!times.gpu.is_empty()).then(|| Spread::of_milliseconds(times.gpu.clone())),
+        build_ms: Spread::of(&builds),
+        builds: builds.len() as u32,
+        pipelines_ms: milliseconds(built.first_pipelines),
+        warm_up_ms: Some(warm_up_ms),
+        paper_frames_per_second: case.paper_ms.map(|ms| 1e3 / ms),
+        rays_per_second: RaysPerSecond::new(&row.rays, row.trace_ms.median, &times.traversal()),
+        ..row
+    })
+}
+
+/// Of each frame.
+#[derive(Default)]
+struct Times {
+    trace: Vec<Duration>,
+    wall: Vec<Duration>,
+    gpu: Vec<f64>,
+    traversal: Vec<Traversal>,
+}
+
+impl Times {
+    /// The median of each kind.
+    fn traversal(&self) -> Traversal {
+        let median = |of: fn(&Traversal) -> f64| {
+            Spread::of_milliseconds(self.traversal.iter().map(of).collect()).median
+        };
+        Traversal {
+            camera: median(|t| t.camera),
+            shadow: median(|t| t.shadow),
+            scattered: median(|t| t.scattered),
+        }
+    }
+}
+
+/// The last of some builds.
+struct LastBuilt {
+    built: Built,
+    /// How long the driver took to make pipelines in the first.
+    first_pipelines: Duration,
+}
+
+/// Builds, and times it as often as frames while that takes no longer than [`BUILDING`]. The first build
+/// warms up: it counts only where there is no other.
+fn build(
+    engine: &Engine,
+    plan: &Plan,
+    runs: u32,
+    progress: &Progress,
+) -> Result<(LastBuilt, Vec<Duration>), Failure> {
+    let started = Instant::now();
+    let mut built = engine.build(plan, progress)?;
+    let (first, first_pipelines) = (built.duration, built.pipelines);
+    let mut times = Vec::new();
+    while times.len() < runs as usize && started.elapsed() + built.duration < BUILDING {
+        // One at a time: two might not fit.
+        drop(built);
+        built = engine.build(plan, progress)?;
+        times.push(built.duration);
+    }
+    if times.is_empty() {
+        times.push(first);
+    }
+    Ok((LastBuilt { built, first_pipelines }, times))
+}
+
+fn go_on() -> Result<(), Failure> {
+    if interrupt::requested() { Err(Failure::interrupted()) } else { Ok(()) }
+}
