@@ -49,6 +49,7 @@ void main() {
     uint work_left = params.work;
     bool alive = ray.cell != NONE;
     uint cell = ray.cell;
+    uvec3 at = cell_of_id(grid, alive ? cell : 0u); // once: lavapipe divides integers lane by lane
     uvec2 range = alive ? cells[cell] : uvec2(0u);
     uint next = range.x + ray.cursor;
     uint hit_object = NONE, hit_index = NONE;
@@ -71,8 +72,12 @@ void main() {
     while (alive && cells_left > 0u && work_left > 0u) {
         uint count = min(range.y - next, BATCH);
         uint candidates = 0u;
+        bool everything = ray.cells == 0u || ray.after > 0.0;
+        vec2 within = way_through(grid, at, o, d);
+        within.x = everything ? -NO_HIT : within.x;
+        within.y = ray.after > 0.0 ? NO_HIT : within.y;
         for (uint j = 0u; j < count; ++j) {
-            bool near = near_trust_ball(o, d, center_trust_of(slots[next + j]), ray.hit_t);
+            bool near = enters_trust_ball(o, d, center_trust_of(slots[next + j]), ray.hit_t, within);
             candidates |= near ? 1u << j : 0u;
         }
         uint solved = 0u;
@@ -111,13 +116,12 @@ void main() {
         // On to the next cell that holds points, once this one is exhausted.
         bool seeking = alive && next == range.y;
         while (seeking && cells_left > 0u && work_left > 0u) {
-            uvec3 at = cell_of_id(grid, cell);
             vec3 exits = crossings(grid, at, o, d);
             bool ends = ray.hit_t <= nearest_crossing(exits);
-            uint after = ends ? NONE : step_cell(grid, at, exits, d);
-            alive = after != NONE;
-            cell = after;
-            range = alive ? cells[after] : uvec2(0u);
+            at = next_cell(at, exits, d);
+            alive = !ends && in_grid(grid, at);
+            cell = alive ? cell_id(grid, at) : NONE;
+            range = alive ? cells[cell] : uvec2(0u);
             next = range.x;
             seeking = alive && range.x == range.y;
             ray.cells += alive ? 1u : 0u;

@@ -56,6 +56,12 @@ float nearest_crossing(vec3 t) {
     return min(t.x, min(t.y, t.z));
 }
 
+// Where a ray's way through the cell begins and ends.
+vec2 way_through(GridInfo grid, uvec3 cell, vec3 o, vec3 d) {
+    vec3 enters = -crossings(grid, cell, o, -d);
+    return vec2(max(enters.x, max(enters.y, enters.z)), nearest_crossing(crossings(grid, cell, o, d)));
+}
+
 // One axis of the slabs of the grid's box: narrows [range.x, range.y].
 vec2 clip_slab(vec2 range, float low, float high, float o, float d) {
     bool crosses = abs(d) > PARALLEL;
@@ -79,16 +85,19 @@ uint enter_grid(GridInfo grid, vec3 o, vec3 d) {
     return misses ? NONE : cell_id(grid, cell);
 }
 
-// The next cell behind the face at the nearest crossing (ties: the lower axis), or NONE outside.
-uint step_cell(GridInfo grid, uvec3 cell, vec3 t, vec3 d) {
+// The next cell behind the face at the nearest crossing (ties: the lower axis); outside of the grid, one
+// past some axis.
+uvec3 next_cell(uvec3 cell, vec3 t, vec3 d) {
     bool along_x = t.x <= t.y && t.x <= t.z;
     bool along_y = !along_x && t.y <= t.z;
     bool along_z = !along_x && !along_y;
     uvec3 axis = uvec3(along_x, along_y, along_z);
     uvec3 forth = axis * uvec3(greaterThan(d, vec3(0.0)));
     uvec3 back = axis - forth;
-    uvec3 next = cell + forth - back; // 0 - 1 wraps to a number past every resolution
-    bool outside = any(greaterThanEqual(next, grid.resolution));
-    return outside ? NONE : cell_id(grid, outside ? uvec3(0u) : next);
+    return cell + forth - back; // 0 - 1 wraps to a number past every resolution
+}
+
+bool in_grid(GridInfo grid, uvec3 cell) {
+    return all(lessThan(cell, grid.resolution));
 }
 #endif

@@ -23,6 +23,21 @@ bool near_trust_ball(vec3 o, vec3 d, vec4 center_trust, float nearest) {
     return dot3(y0, y0) <= b * b && s + b > 0.0 && s - b <= nearest;
 }
 
+#define ENTRY_MARGIN 0.0625 // of the trust radius
+
+// The same, and enters the ball on its way from within.x to within.y, or nearly.
+bool enters_trust_ball(vec3 o, vec3 d, vec4 center_trust, float nearest, vec2 within) {
+    vec3 from_center = o - center_trust.xyz;
+    float b = center_trust.w;
+    float s = -dot3(from_center, d);
+    vec3 y0 = from_center + s * d;
+    float under_root = b * b - dot3(y0, y0);
+    float entry = s - sqrt(max(under_root, 0.0));
+    float margin = ENTRY_MARGIN * b;
+    return under_root >= 0.0 && s + b > 0.0 && s - b <= nearest
+        && entry >= within.x - margin && entry <= within.y + margin;
+}
+
 // The unit normal of the polynomial's own level through x.
 vec3 normal_at(Polynomial p, vec3 x) {
     return normalize3(p.gradient_offset.xyz - 2.0 * apply_curvature(p, x - p.center_trust.xyz));

@@ -14,11 +14,13 @@ pub(crate) const BATCH: usize = 32;
 /// The sheet that a ray starts on: its normal there, and its object.
 pub(crate) type Sheet<R> = (V3<R>, u32);
 
-/// Tests the points of `batch`, at most [`BATCH`] slots, for a ray that starts on `sheet` if on any.
+/// Tests the points of `batch`, at most [`BATCH`] slots, those alone whose ball the ray enters `within`
+/// a range of distances if one is given, for a ray that starts on `sheet` if on any.
 pub(crate) fn test_batch<R: Real>(
     ray: &mut Ray<R>,
     batch: &[u32],
     polynomials: &[Polynomial<R>],
+    within: Option<[R; 2]>,
     sheet: Option<Sheet<R>>,
 ) {
     let (o, d) = (ray.origin, ray.direction);
@@ -26,7 +28,8 @@ pub(crate) fn test_batch<R: Real>(
     let nearest = ray.hit_t;
     for &slot in batch {
         let p = &polynomials[slot as usize];
-        if !p.near_trust_ball(o, d, nearest) {
+        let near = p.near_trust_ball(o, d, nearest);
+        if !near || within.is_some_and(|within| !p.entered_within(o, d, within)) {
             continue;
         }
         let own =

@@ -22,7 +22,7 @@ pub fn disc_trace<R: Real>(
     let mut next = if missed { end } else { first };
     while next < end {
         let batch = &lists.slots[next..end.min(next + BATCH)];
-        test_batch(ray, batch, polynomials, None);
+        test_batch(ray, batch, polynomials, None, None);
         next += batch.len();
         let rank_mask = (1 << lists.ranks.bits) - 1;
         let rank = lists.keys.get(next).map_or(0, |key| key & rank_mask);

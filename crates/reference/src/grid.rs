@@ -118,10 +118,17 @@ impl<R: Real> Grid<R> {
         if near > far { NONE } else { self.cell_id(self.cell_of(o + d.times(near))) }
     }
 
-    /// The next cell behind the face at the nearest crossing (ties: the lower axis), or `NONE`
-    /// outside.
+    /// Where a ray's way through the cell begins and ends.
     #[must_use]
-    pub fn step(&self, mut cell: [u32; 3], t: V3<R>, d: V3<R>) -> u32 {
+    pub fn way_through(&self, cell: [u32; 3], o: V3<R>, d: V3<R>) -> [R; 2] {
+        let enters = -self.crossings(cell, o, -d);
+        let enter = enters.x().max(enters.y().max(enters.z()));
+        [enter, nearest_crossing(self.crossings(cell, o, d))]
+    }
+
+    /// The next cell behind the face at the nearest crossing (ties: the lower axis), or none outside.
+    #[must_use]
+    pub fn step(&self, mut cell: [u32; 3], t: V3<R>, d: V3<R>) -> Option<[u32; 3]> {
         let axis = if t.x() <= t.y() && t.x() <= t.z() {
             0
         } else if t.y() <= t.z() {
@@ -131,7 +138,7 @@ impl<R: Real> Grid<R> {
         };
         let back = if d.0[axis] > R::of(0.0) { 1 } else { u32::MAX };
         cell[axis] = cell[axis].wrapping_add(back);
-        if cell[axis] >= self.resolution[axis] { NONE } else { self.cell_id(cell) }
+        (cell[axis] < self.resolution[axis]).then_some(cell)
     }
 }
 
@@ -167,11 +174,11 @@ mod tests {
 
     fn walk(grid: &Grid<f64>, o: V3<f64>, d: V3<f64>) -> Vec<[u32; 3]> {
         let mut visited = Vec::new();
-        let mut id = grid.enter(o, d);
-        while id != NONE {
-            let cell = grid.cell_of_id(id);
+        let id = grid.enter(o, d);
+        let mut next = (id != NONE).then(|| grid.cell_of_id(id));
+        while let Some(cell) = next {
             visited.push(cell);
-            id = grid.step(cell, grid.crossings(cell, o, d), d);
+            next = grid.step(cell, grid.crossings(cell, o, d), d);
         }
         visited
     }

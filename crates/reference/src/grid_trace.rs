@@ -8,7 +8,7 @@ use crate::camera_rays::Ray;
 use crate::grid::{Grid, nearest_crossing};
 use crate::grid_build::CellLists;
 use crate::polynomial::Polynomial;
-use crate::real::Real;
+use crate::real::{NO_HIT, Real};
 use kernels::layout::NONE;
 
 /// Follows one ray until it ends, at the nearest hit or, where `any_hit`, at the first that is found.
@@ -21,19 +21,27 @@ pub fn grid_trace<R: Real>(
 ) {
     let (o, d) = (ray.origin, ray.direction);
     let sheet = polynomials.get(ray.left as usize).map(|left| (left.normal_at(o), left.object));
-    while ray.cell != NONE {
-        let [first, end] = lists.cells[ray.cell as usize].map(|at| at as usize);
+    if ray.cell == NONE {
+        return;
+    }
+    let mut next = Some(grid.cell_of_id(ray.cell));
+    while let Some(at) = next {
+        let later = ray.after > R::of(0.0);
+        let mut within = grid.way_through(at, o, d);
+        within[0] = if later || ray.cells == 0 { R::of(-NO_HIT) } else { within[0] };
+        within[1] = if later { R::of(NO_HIT) } else { within[1] };
+        let [first, end] = lists.cells[grid.cell_id(at) as usize].map(|at| at as usize);
         for batch in lists.slots[first..end].chunks(BATCH) {
-            test_batch(ray, batch, polynomials, sheet);
+            test_batch(ray, batch, polynomials, Some(within), sheet);
             if any_hit && ray.hit_slot != NONE {
                 ray.cell = NONE;
                 return;
             }
         }
-        let at = grid.cell_of_id(ray.cell);
         let exits = grid.crossings(at, o, d);
         let ends = ray.hit_t <= nearest_crossing(exits);
-        ray.cell = if ends { NONE } else { grid.step(at, exits, d) };
-        ray.cells += u32::from(ray.cell != NONE);
+        next = if ends { None } else { grid.step(at, exits, d) };
+        ray.cells += u32::from(next.is_some());
     }
+    ray.cell = NONE;
 }

@@ -5,6 +5,7 @@ use kernels::layout;
 
 /// Of the trust radius: how far a ray may still meet the sheet that it starts on.
 pub const SHEET_REACH: f64 = 0.5;
+const ENTRY_MARGIN: f64 = 0.0625; // of the trust radius
 const SHEET_HEIGHT: f64 = 0.3;
 const SHEET_COSINE: f64 = 0.5;
 
@@ -87,6 +88,15 @@ impl<R: Real> Polynomial<R> {
         let (s, y0) = nearest_approach(o, d, self.center);
         let b = self.trust;
         y0.dot(y0) <= b * b && s + b > R::of(0.0) && s - b <= nearest
+    }
+
+    /// Whether the ray enters the trust ball on its way through the range of distances, or nearly.
+    pub fn entered_within(&self, o: V3<R>, d: V3<R>, within: [R; 2]) -> bool {
+        let (s, y0) = nearest_approach(o, d, self.center);
+        let b = self.trust;
+        let entry = s - (b * b - y0.dot(y0)).max(R::of(0.0)).sqrt();
+        let margin = R::of(ENTRY_MARGIN) * b;
+        entry >= within[0] - margin && entry <= within[1] + margin
     }
 
     /// The unit normal of the polynomial's own level through x.
