@@ -28,7 +28,7 @@ void main() {
     if (any(greaterThanEqual(pixel, params.tile_size))) return;
     uint at = pixel.y * params.tile_size.x + pixel.x;
     FilmPixel next = film[at];
-    FilmSum sum = FilmSum(next, vec4(0.0));
+    FilmSum sum = FilmSum(next, vec4(0.0), vec3(0.0), 0u);
     if (params.sample_index > 0u) {
         sum = sums[at];
         vec4 term = next.color - sum.lost;
@@ -36,11 +36,16 @@ void main() {
         vec4 lost = (total - sum.pixel.color) - term;
         sum.lost = mix(vec4(0.0), lost, lessThan(abs(total), vec4(NO_HIT))); // infinity loses nothing
         sum.pixel.color = total;
+        vec3 alpha_term = next.alpha - sum.lost_alpha;
+        vec3 alpha_total = sum.pixel.alpha + alpha_term;
+        sum.lost_alpha = (alpha_total - sum.pixel.alpha) - alpha_term;
+        sum.pixel.alpha = alpha_total;
         sum.pixel.counts.x = saturating_sum(sum.pixel.counts.x, next.counts.x);
         sum.pixel.counts.y = saturating_sum(sum.pixel.counts.y, next.counts.y);
     }
     if (params.sample_index + 1u == params.samples) {
         sum.pixel.color = sum.pixel.color / float(params.samples);
+        sum.pixel.alpha = sum.pixel.alpha / float(params.samples);
         film[at] = sum.pixel;
     } else {
         sums[at] = sum;

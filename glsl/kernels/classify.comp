@@ -66,7 +66,9 @@ void main() {
     next[at] = found && !is_diffuse ? rays_behind(at, object) : 0u;
 
     bool from_camera = params.wave == 0u;
-    bool left_out = from_camera && params.transparent != 0u;
+    uint channels = paths[at].channels;
+    bool left_out = leaves_out(params.transparent, from_camera, channels);
+    vec3 alpha = vec3(1.0) - (found || (channels & uint(PATH_REFLECTED)) != 0u ? vec3(0.0) : throughput);
     vec3 background = found || left_out ? vec3(0.0) : throughput * background_at(params.background, ray.direction);
     vec3 behind = paths[at].emitted + background;
     if (from_camera) {
@@ -74,9 +76,10 @@ void main() {
         uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, hit.status >> HIT_TOTAL_SHIFT);
         film[pixel] = FilmPixel(vec4(found ? vec3(0.0) : behind, found ? 1.0 : paths[at].coverage),
                                 found ? vec4(hit.position, depth) : vec4(0.0, 0.0, 0.0, INFINITE_DEPTH),
-                                found ? vec4(hit.normal, float(object)) : vec4(0.0, 0.0, 0.0, -1.0), counts);
+                                found ? vec4(hit.normal, float(object)) : vec4(0.0, 0.0, 0.0, -1.0), counts, alpha, 0u);
     } else {
         count_work(pixel, ray.tests, ray.cells);
-        if (!found) write_channels(pixel, paths[at].channels, behind);
+        if (!found) write_channels(pixel, channels, behind);
+        if (!found) write_alpha(pixel, channels, alpha);
     }
 }

@@ -45,7 +45,7 @@ void store_path(uint to, uint from, vec3 throughput, uint channels, bool bounces
     bool leaves = place < count;
     next_paths[to].throughput = throughput;
     next_paths[to].pixel = paths[from].pixel;
-    next_paths[to].channels = channels;
+    next_paths[to].channels = channels | (bounces && !toggles ? uint(PATH_REFLECTED) : 0u);
     next_paths[to].bounces = paths[from].bounces + (bounces ? 1u : 0u);
     next_paths[to].crossings = paths[from].crossings + (bounces ? 0u : 1u);
     uint last = count > 0u ? count - 1u : 0u; // where one is left, the last takes its place
@@ -75,7 +75,8 @@ void main() {
     Hit hit = hits[at];
     vec3 d = ray.direction, n = hit.normal;
     bool is_glass = material == MATERIAL_GLASS;
-    uint all = paths[at].channels;
+    uint all = paths[at].channels & uint(CHANNELS_ALL);
+    uint was_reflected = paths[at].channels & uint(PATH_REFLECTED);
     Crossing crossing = Crossing(NONE, NONE, MOST_MEDIA);
     if (is_glass) crossing = crossing_of(at, object);
     bool passes = is_glass && crossing.before == crossing.after;
@@ -95,14 +96,17 @@ void main() {
         bool reflects = !is_glass || (!passes && (bent.total || by_chance));
         vec3 direction = reflects ? reflected(d, n) : (passes ? d : bent.direction);
         if (goes_on) {
-            store_path(to + i, at, throughput, channels, !passes, !reflects, object, crossing.place);
+            store_path(to + i, at, throughput, channels | was_reflected, !passes, !reflects, object, crossing.place);
             uint cell = enter_grid(grid, hit.position, direction);
             store_ray(to + i, new_ray(hit.position, direction, cell, ray.hit_slot));
             if (reflects) atomicAdd(reflected_count, 1u);
             else atomicAdd(refracted_count, 1u);
         } else {
-            vec3 background = throughput * background_at(params.background, direction);
-            write_channels(paths[at].pixel, channels, paths[at].emitted + background);
+            uint how = channels | was_reflected | (reflects ? uint(PATH_REFLECTED) : 0u);
+            vec3 seen = leaves_out(params.transparent, false, how) ? vec3(0.0) : background_at(params.background, direction);
+            write_channels(paths[at].pixel, channels, paths[at].emitted + throughput * seen);
+            bool refracted = (how & uint(PATH_REFLECTED)) == 0u;
+            write_alpha(paths[at].pixel, channels, vec3(1.0) - (refracted ? throughput : vec3(0.0)));
         }
     }
 }

@@ -7,10 +7,22 @@
 #define FILM_GLSL
 #include "layout.glsl"
 
+// Whether a path that ends in the background leaves it out of a transparent picture.
+bool leaves_out(uint transparent, bool from_camera, uint channels) {
+    bool refracted = (channels & uint(PATH_REFLECTED)) == 0u;
+    return transparent != 0u && (from_camera || (transparent == uint(TRANSPARENT_GLASS) && refracted));
+}
+
 void write_channels(uint pixel, uint channels, vec3 radiance) {
     if ((channels & 1u) != 0u) film[pixel].color.x = radiance.x;
     if ((channels & 2u) != 0u) film[pixel].color.y = radiance.y;
     if ((channels & 4u) != 0u) film[pixel].color.z = radiance.z;
+}
+
+void write_alpha(uint pixel, uint channels, vec3 alpha) {
+    if ((channels & 1u) != 0u) film[pixel].alpha.x = alpha.x;
+    if ((channels & 2u) != 0u) film[pixel].alpha.y = alpha.y;
+    if ((channels & 4u) != 0u) film[pixel].alpha.z = alpha.z;
 }
 
 void count_work(uint pixel, uint tests, uint cells) {

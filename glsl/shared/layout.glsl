@@ -122,6 +122,11 @@
 
 #define MOST_CROSSINGS 1024 // surfaces a path may pass through that do not change its medium
 #define CHANNELS_ALL 7 // a path's channels: 1 red, 2 green, 4 blue
+#define PATH_REFLECTED 8 // beside them: the path was reflected somewhere
+
+// What transparent pictures leave the background out of.
+#define TRANSPARENT_CAMERA 1 // camera rays
+#define TRANSPARENT_GLASS 2 // and all that was refracted alone
 #define CAMERA_FILTER 28
 #define FILM_SUMS 29
 #define CAMERA_PATH 32
@@ -321,7 +326,7 @@ struct WaveParams {      // 80 bytes
     uint light;          // 64  the one that shadow rays go to now
     uint light_count;    // 68
     uint sample_index;   // 72  of the pixel; NONE: there is one alone, and lights have no extent
-    uint transparent;    // 76  1: camera rays leave the background out
+    uint transparent;    // 76  TRANSPARENT_*, or 0: nothing leaves the background out
 };
 
 // An image whose texels lie in rows, the top row first.
@@ -369,7 +374,7 @@ struct Hit {             // 32 bytes
 struct Path {            // 80 bytes
     vec3 throughput;     //  0  what of the light it finds arrives at the pixel
     uint pixel;          // 12  of the tile, row by row; NONE: no ray at all
-    uint channels;       // 16  bits of CHANNELS_ALL
+    uint channels;       // 16  bits of CHANNELS_ALL, and PATH_REFLECTED
     uint bounces;        // 20  interactions with surfaces so far
     uint crossings;      // 24  surfaces passed through so far
     uint media_count;    // 28  objects that it is inside
@@ -485,17 +490,21 @@ struct LightSum {        // 32 bytes
     uint pad_end;        // 28
 };
 
-struct FilmPixel {       // 64 bytes
+struct FilmPixel {       // 80 bytes
     vec4 color;          //  0  radiance and coverage
     vec4 position_depth; // 16  centred scene space; distance along the viewing axis
     vec4 normal_object;  // 32  facing the viewer; object, or -1
     uvec4 counts;        // 48  tests, cells, slot of the hit or NONE, iterations
+    vec3 alpha;          // 64  1 less what the channel lets through of the background
+    uint pad;            // 76
 };
 
-// A pixel's samples so far: sums of colours and of the first two counts; all else is the first's.
-struct FilmSum {         // 80 bytes
+// A pixel's samples so far: sums of colours, alphas and of the first two counts; all else is the first's.
+struct FilmSum {         // 112 bytes
     FilmPixel pixel;     //  0
-    vec4 lost;           // 64  what rounding added to the colours' sums
+    vec4 lost;           // 80  what rounding added to the colours' sums
+    vec3 lost_alpha;     // 96
+    uint pad;            // 108
 };
 
 struct AccumulateParams { // 16 bytes

@@ -68,7 +68,7 @@ bool disperses(uint medium) {
 
 // Whether a ray becomes one a channel at this crossing.
 bool splits(Crossing crossing, uint channels) {
-    return channels == CHANNELS_ALL && (disperses(crossing.before) || disperses(crossing.after));
+    return (channels & uint(CHANNELS_ALL)) == uint(CHANNELS_ALL) && (disperses(crossing.before) || disperses(crossing.after));
 }
 
 // What of the light comes through a way inside a medium.

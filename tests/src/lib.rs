@@ -165,12 +165,16 @@ pub fn assert_same_film(name: &str, a: &Film, b: &Film) {
             ("N", bytemuck::cast_slice(&film.normal).to_vec(), 12),
             ("RGBA", bytemuck::cast_slice(&film.color).to_vec(), 16),
         ];
+        if let Some(alpha) = &film.channel_alpha {
+            planes.push(("AR AG AB", bytemuck::cast_slice(alpha).to_vec(), 12));
+        }
         let extra = film.extra.iter();
         planes.extend(
             extra.map(|(name, plane)| (name.as_str(), bytemuck::cast_slice(plane).to_vec(), 4)),
         );
         planes
     }
+    assert_eq!(a.channel_alpha.is_some(), b.channel_alpha.is_some(), "{name}: AR AG AB");
     assert_eq!(a.extra.len(), b.extra.len(), "{name}: extra channels");
     for ((plane, left, size), (_, right, _)) in planes(a).into_iter().zip(planes(b)) {
         let differing: Vec<usize> = left

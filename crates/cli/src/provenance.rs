@@ -1,16 +1,17 @@
 //! What an EXR says of where its picture comes from, beside the scene: enough to know whether two
-//! pictures were made from the same, by the same.
+//! pictures were made from the same, by the same. What a transfer function is stands in the scene itself.
 
 use crate::engine::Engine;
 use crate::input::Input;
 use film::Provenance;
+use kernels::layout::IMAGE_SRGB8;
 use plan::Plan;
 use points::{PointSet, Values};
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 
 /// The plan's provenance with the program's version, the device and its driver, the seed, and hashes of
-/// the scene and of each object's points. Nothing that changes from run to run on one machine.
+/// the scene, of each object's points, and of images. Nothing that changes from run to run on one machine.
 pub fn of(plan: &Plan, input: &Input, sets: &[Arc<PointSet>], engine: &Engine) -> Provenance {
     let mut provenance = plan.provenance().clone();
     let scene = provenance.settings.iter().find(|(key, _)| key == "scene");
@@ -34,7 +35,30 @@ pub fn of(plan: &Plan, input: &Input, sets: &[Arc<PointSet>], engine: &Engine) -
         add(format!("points.{index}.sha256"), hash.clone());
         hashes.push(hash);
     }
+    if let Some(hash) = image_hash(plan, plan.wave.background.environment) {
+        add("environment.sha256".to_owned(), hash);
+    }
+    for (index, object) in plan.objects.iter().enumerate() {
+        if let Some(hash) = image_hash(plan, object.texture) {
+            add(format!("texture.{index}.sha256"), hash);
+        }
+    }
     provenance
+}
+
+/// SHA-256 of an image of the plan, whatever its file's encoding: columns and rows as u32; then its texels
+/// row by row, in sRGB as the bytes R, G, B, 255, else as three f32. All little-endian.
+fn image_hash(plan: &Plan, image: u32) -> Option<String> {
+    let info = plan.images.get(image as usize)?;
+    let words =
+        info.width as usize * info.height as usize * if info.format == IMAGE_SRGB8 { 1 } else { 3 };
+    let mut hash = Sha256::new();
+    hash.update(info.width.to_le_bytes());
+    hash.update(info.height.to_le_bytes());
+    for word in &plan.texels[info.first as usize..][..words] {
+        hash.update(word.to_le_bytes());
+    }
+    Some(hex(hash.finalize()))
 }
 
 /// SHA-256 of a point set, whatever its file's encoding: the number of points as u64, their positions as

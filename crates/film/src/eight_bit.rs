@@ -17,7 +17,8 @@ const JPEG_QUALITY: u8 = 95;
 pub(crate) fn png(film: &Film, tone: Tone, path: &Path) -> Result<Vec<u8>, FilmError> {
     let Window { width, height, .. } = film.window;
     let (color, pixels): (_, Vec<u8>) = if film.transparent {
-        let straight = film.color.iter().flat_map(|&color| straight_rgba(color, tone));
+        let straight =
+            (0..film.color.len()).flat_map(|at| straight_rgba(with_one_alpha(film, at), tone));
         (png::ColorType::Rgba, straight.collect())
     } else {
         (png::ColorType::Rgb, opaque(film, tone))
@@ -61,6 +62,13 @@ pub(crate) fn jpeg(film: &Film, tone: Tone, path: &Path) -> Result<Vec<u8>, Film
 fn opaque(film: &Film, tone: Tone) -> Vec<u8> {
     let shown = |c: f32| srgb_byte(tone.apply(c));
     film.color.iter().flat_map(|&[r, g, b, _]| [r, g, b].map(shown)).collect()
+}
+
+/// A pixel with the one alpha that PNG has room for: the mean where the channels have their own.
+fn with_one_alpha(film: &Film, at: usize) -> [f32; 4] {
+    let [r, g, b, a] = film.color[at];
+    let mean = |[r, g, b]: [f32; 3]| (r + g + b) / 3.0;
+    [r, g, b, film.channel_alpha.as_ref().map_or(a, |alpha| mean(alpha[at]))]
 }
 
 /// A premultiplied colour as PNG wants it: not multiplied by alpha. Without coverage it is black,

@@ -126,7 +126,7 @@ const REC_709: Chromaticities = Chromaticities {
     white: Vec2(0.3127, 0.3290),
 };
 
-/// All channels of a film. With `half`, what is looked at is in 16 bits: R, G, B, A and N. What is
+/// All channels of a film. With `half`, what is looked at is in 16 bits: R, G, B, their alphas and N. What is
 /// measured or counted stays: a half has three decimal digits, and no index over 2048.
 fn channels(film: &Film, half: bool) -> Vec<AnyChannel<FlatSamples>> {
     fn plane<const N: usize>(pixels: &[[f32; N]], index: usize) -> Vec<f32> {
@@ -150,6 +150,11 @@ fn channels(film: &Film, half: bool) -> Vec<AnyChannel<FlatSamples>> {
         shown("N.Z", plane(&film.normal, 2)),
         float("object", film.object.clone()),
     ];
+    if let Some(alpha) = &film.channel_alpha {
+        list.extend(
+            [("AR", 0), ("AG", 1), ("AB", 2)].map(|(name, at)| shown(name, plane(alpha, at))),
+        );
+    }
     for (name, samples) in &film.extra {
         let extra = float(name, samples.clone());
         let free = !name.is_empty() && list.iter().all(|channel| channel.name != extra.name);

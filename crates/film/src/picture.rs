@@ -13,6 +13,9 @@ pub struct Film {
     pub transparent: bool,
     /// Radiance R, G, B in linear Rec. 709, and coverage A.
     pub color: Vec<[f32; 4]>,
+    /// Where glass treats the channels differently: coverage of R, G and B, each 1 less what comes through of the
+    /// background by glass and volumes alone. A transparent film then leaves that background out.
+    pub channel_alpha: Option<Vec<[f32; 3]>>,
     /// Distance to the first surface along the camera's viewing axis, +inf where there is none.
     pub depth: Vec<f32>,
     /// World position of the first surface, 0 where there is none.
@@ -22,7 +25,7 @@ pub struct Film {
     /// Index of the first surface's object, −1 where there is none.
     pub object: Vec<f32>,
     /// Further planes by the names that their channels have in an EXR. Names are distinct, not
-    /// empty, and none of `R G B A Z P.X P.Y P.Z N.X N.Y N.Z object`. Other formats leave them out.
+    /// empty, and none of `R G B A AR AG AB Z P.X P.Y P.Z N.X N.Y N.Z object`. Other formats leave them out.
     pub extra: Vec<(String, Vec<f32>)>,
 }
 
@@ -77,6 +80,7 @@ impl Film {
             window,
             transparent,
             color: vec![[0.0; 4]; pixels],
+            channel_alpha: None,
             depth: vec![f32::INFINITY; pixels],
             position: vec![[0.0; 3]; pixels],
             normal: vec![[0.0; 3]; pixels],
@@ -105,6 +109,9 @@ impl Film {
             ("normal", self.normal.len()),
             ("object", self.object.len()),
         ];
+        if let Some(alpha) = &self.channel_alpha {
+            assert_eq!(alpha.len(), pixels, "film: pixels of the channels' alpha");
+        }
         let extra = self.extra.iter().map(|(name, plane)| (name.as_str(), plane.len()));
         for (plane, length) in planes.into_iter().chain(extra) {
             assert_eq!(length, pixels, "film: pixels of plane '{plane}' against the window's");

@@ -232,6 +232,25 @@ fn transparent_png_holds_straight_colors() {
 }
 
 #[test]
+fn alpha_by_channel_is_written_by_name_and_its_mean_is_a_png_s() {
+    let folder = folder();
+    let mut film = Film::empty([1, 1], Window::whole([1, 1]), true);
+    film.color[0] = [0.25, 0.5, 0.0, 1.0];
+    film.channel_alpha = Some(vec![[0.25, 0.5, 0.75]]);
+    let path = folder.path().join("a.exr");
+    write(&film, &provenance(), &path).unwrap();
+    let read = crate::read_exr(&path).unwrap();
+    for (name, value) in [("A", 1.0), ("AR", 0.25), ("AG", 0.5), ("AB", 0.75)] {
+        assert_eq!(read.channels[name], [value], "{name}");
+    }
+    let path = folder.path().join("a.png");
+    write(&film, &provenance(), &path).unwrap();
+    // Straight: half of red, all of green, by an alpha of one half.
+    let image = image::open(&path).unwrap().to_rgba8();
+    assert_eq!(image.get_pixel(0, 0).0, [188, 255, 0, 128]);
+}
+
+#[test]
 fn transparent_jpeg_is_over_black() {
     let folder = folder();
     let path = folder.path().join("a.jpeg");

@@ -186,6 +186,12 @@ constants! {
     MOST_CROSSINGS = 1024;
     /// [`Path::channels`] of a ray that carries all three.
     CHANNELS_ALL = 7;
+    /// Bit beside them: the path was reflected somewhere.
+    PATH_REFLECTED = 8;
+    /// [`WaveParams::transparent`]: camera rays leave the background out.
+    TRANSPARENT_CAMERA = 1;
+    /// [`WaveParams::transparent`]: and so does all that was refracted alone.
+    TRANSPARENT_GLASS = 2;
     /// Binding of `camera_rays`: where the reconstruction filter's integral takes equal steps.
     CAMERA_FILTER = 28;
     /// Binding of `accumulate`: [`FilmSum`]s.
@@ -621,7 +627,7 @@ pub struct WaveParams {
     pub light_count: u32,
     /// Which sample of each pixel; `NONE` where there is one alone, and lights have no extent.
     pub sample_index: u32,
-    /// 1 where camera rays leave the background out.
+    /// What leaves the background out: one of `TRANSPARENT_*`, or 0 for nothing.
     pub transparent: u32,
 }
 gpu_layout!(WaveParams, 80, {
@@ -727,7 +733,7 @@ pub struct Path {
     pub throughput: [f32; 3],
     /// Pixel of the tile, row by row; `NONE`: no ray at all.
     pub pixel: u32,
-    /// Bits of `CHANNELS_ALL`: 1 red, 2 green, 4 blue.
+    /// Bits of `CHANNELS_ALL`: 1 red, 2 green, 4 blue; and `PATH_REFLECTED`.
     pub channels: u32,
     /// Interactions with surfaces so far.
     pub bounces: u32,
@@ -980,19 +986,29 @@ pub struct FilmPixel {
     pub normal_object: [f32; 4],
     /// Points tested, cells crossed, slot of the hit or `NONE`, iterations of its refinement.
     pub counts: [u32; 4],
+    /// 1 less what each channel lets through of the background, by glass and volumes alone.
+    pub alpha: [f32; 3],
+    /// Unused.
+    pub pad: u32,
 }
-gpu_layout!(FilmPixel, 64, { color: 0, position_depth: 16, normal_object: 32, counts: 48 });
+gpu_layout!(FilmPixel, 80, {
+    color: 0, position_depth: 16, normal_object: 32, counts: 48, alpha: 64, pad: 76,
+});
 
 /// A pixel's samples so far.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct FilmSum {
-    /// Sums of colours and of the first two counts; all else is the first sample's.
+    /// Sums of colours, alphas and of the first two counts; all else is the first sample's.
     pub pixel: FilmPixel,
     /// What rounding added to the colours' sums.
     pub lost: [f32; 4],
+    /// What it added to the alphas'.
+    pub lost_alpha: [f32; 3],
+    /// Unused.
+    pub pad: u32,
 }
-gpu_layout!(FilmSum, 80, { pixel: 0, lost: 64 });
+gpu_layout!(FilmSum, 112, { pixel: 0, lost: 80, lost_alpha: 96, pad: 108 });
 
 /// Push constants of `accumulate`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

@@ -136,6 +136,8 @@ mod tests {
             position_depth: [1.0, 2.0, 3.25, 9.0],
             normal_object: [0.0, 0.0, 1.0, 0.0],
             counts: [40, 5, 0, 0],
+            alpha: [1.0; 3],
+            pad: 0,
         };
         assert_eq!(values(&pixel), [7.0, 40.0, 5.0, 0.0, 0.5, 2.0]);
         pixel.counts[2] = 1;
@@ -151,6 +153,8 @@ mod tests {
             position_depth: [0.0, 0.0, 0.0, f32::INFINITY],
             normal_object: [0.0, 0.0, 0.0, -1.0],
             counts: [40, 5, NONE, 0],
+            alpha: [0.0; 3],
+            pad: 0,
         };
         assert_eq!(values(&pixel), [-1.0, 40.0, 5.0, 0.0, -1.0, -1.0]);
     }

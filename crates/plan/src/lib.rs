@@ -29,7 +29,8 @@ pub use volumes::Volumes;
 use images::{ImageList, Use};
 use kernels::layout::{
     self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, LIGHT_DIRECTIONAL,
-    LIGHT_POINT, MATERIAL_DIFFUSE, MEDIA_WORDS, NONE, ObjectInfo, WaveParams,
+    LIGHT_POINT, MATERIAL_DIFFUSE, MEDIA_WORDS, NONE, ObjectInfo, TRANSPARENT_CAMERA,
+    TRANSPARENT_GLASS, WaveParams,
 };
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
 use points::{Cloud, CloudError, ObjectPoints, PointSet, bounds_of};
@@ -114,6 +115,7 @@ pub struct Plan {
     /// Diagnostics that the film is to have, each at most once. None at first.
     pub diagnostics: Vec<Diagnostic>,
     transparent: bool,
+    channel_alpha: bool,
     provenance: film::Provenance,
 }
 
@@ -160,6 +162,7 @@ impl Plan {
         let mut list = ImageList::new();
         let (mut objects, colors) = object_infos(scene, &surface_sets, &cloud, images, &mut list)?;
         color_isosurfaces(scene, &volumes, &mut objects);
+        let channel_alpha = objects.iter().any(objects::tells_channels_apart);
         let environment = match &scene.background.environment {
             Some(file) => {
                 add_image(&mut list, images.environment.as_ref(), file, Use::Environment)?
@@ -190,7 +193,11 @@ impl Plan {
                     color: scene.background.color.map(|c| c as f32),
                     environment,
                 },
-                transparent: u32::from(scene.image.transparent),
+                transparent: match (scene.image.transparent, channel_alpha) {
+                    (false, _) => 0,
+                    (true, false) => TRANSPARENT_CAMERA,
+                    (true, true) => TRANSPARENT_GLASS,
+                },
                 tile_origin: [0, 0],
                 tile_size: [0, 0],
                 wave: 0,
@@ -214,6 +221,7 @@ impl Plan {
             isolated,
             diagnostics: Vec::new(),
             transparent: scene.image.transparent,
+            channel_alpha,
             provenance: film::Provenance {
                 world_to_camera: view.world_to_camera,
                 world_to_ndc: view.world_to_ndc,

@@ -221,3 +221,9 @@ pub(crate) fn add_image(
     list.add(image, &file.as_written, used)
         .ok_or_else(|| PlanError::TooManyTexels(file.as_written.clone()))
 }
+
+/// Whether an object is of glass that bends or absorbs one channel more than another.
+pub(crate) fn tells_channels_apart(object: &ObjectInfo) -> bool {
+    let differ = |[r, g, b]: [f32; 3]| r != g || g != b;
+    object.material == MATERIAL_GLASS && (differ(object.ior) || differ(object.absorption))
+}

@@ -66,6 +66,7 @@ impl Picture {
             height: plan.window.size[1],
         };
         let mut film = Film::empty(plan.image_size, window, plan.transparent);
+        film.channel_alpha = plan.channel_alpha.then(|| vec![[0.0; 3]; window.pixels()]);
         film.extra = plan
             .diagnostics
             .iter()
@@ -95,6 +96,9 @@ impl Picture {
                 let [x, y, z, depth] = pixel.position_depth;
                 let [nx, ny, nz, object] = pixel.normal_object;
                 film.color[at] = pixel.color;
+                if let Some(alpha) = &mut film.channel_alpha {
+                    alpha[at] = pixel.alpha;
+                }
                 film.depth[at] = depth;
                 film.normal[at] = [nx, ny, nz];
                 film.object[at] = object;

@@ -8,7 +8,12 @@ use kernels::layout::{FilmPixel, FilmSum};
 pub fn accumulate(sums: &mut Vec<FilmSum>, film: &mut [FilmPixel], index: u32, samples: u32) {
     if index == 0 {
         sums.clear();
-        sums.extend(film.iter().map(|&pixel| FilmSum { pixel, lost: [0.0; 4] }));
+        sums.extend(film.iter().map(|&pixel| FilmSum {
+            pixel,
+            lost: [0.0; 4],
+            lost_alpha: [0.0; 3],
+            pad: 0,
+        }));
     } else {
         for (sum, next) in sums.iter_mut().zip(film.iter()) {
             add(sum, next);
@@ -18,20 +23,25 @@ pub fn accumulate(sums: &mut Vec<FilmSum>, film: &mut [FilmPixel], index: u32, s
         for (sum, pixel) in sums.iter().zip(film) {
             *pixel = sum.pixel;
             pixel.color = sum.pixel.color.map(|total| total / samples as f32);
+            pixel.alpha = sum.pixel.alpha.map(|total| total / samples as f32);
         }
     }
 }
 
 /// Kahan's summation: over thousands of samples, a plain sum would lose as many roundings.
-fn add(sum: &mut FilmSum, next: &FilmPixel) {
-    for channel in 0..4 {
-        let before = sum.pixel.color[channel];
-        let term = next.color[channel] - sum.lost[channel];
-        let total = before + term;
-        let lost = (total - before) - term;
-        sum.lost[channel] = if total.abs() < 3.0e38 { lost } else { 0.0 };
-        sum.pixel.color[channel] = total;
+fn add_values<const N: usize>(sums: &mut [f32; N], lost: &mut [f32; N], next: [f32; N]) {
+    for ((sum, lost), next) in sums.iter_mut().zip(lost).zip(next) {
+        let term = next - *lost;
+        let total = *sum + term;
+        let rounding = (total - *sum) - term;
+        *lost = if total.abs() < 3.0e38 { rounding } else { 0.0 };
+        *sum = total;
     }
+}
+
+fn add(sum: &mut FilmSum, next: &FilmPixel) {
+    add_values(&mut sum.pixel.color, &mut sum.lost, next.color);
+    add_values(&mut sum.pixel.alpha, &mut sum.lost_alpha, next.alpha);
     for count in 0..2 {
         sum.pixel.counts[count] = sum.pixel.counts[count].saturating_add(next.counts[count]);
     }
@@ -47,6 +57,8 @@ mod tests {
             position_depth: [counts[0] as f32; 4],
             normal_object: [counts[1] as f32; 4],
             counts,
+            alpha: [color; 3],
+            pad: 0,
         }
     }
 
@@ -70,7 +82,7 @@ mod tests {
     #[test]
     fn counts_add_up_and_all_else_is_the_first_samples() {
         let mean = mean(&[1.0, 2.0, 6.0]);
-        assert_eq!(mean.color, [3.0; 4]);
+        assert_eq!((mean.color, mean.alpha), ([3.0; 4], [3.0; 3]));
         assert_eq!(mean.counts, [6, u32::MAX, 0, 7], "no count wraps");
         assert_eq!(
             (mean.position_depth, mean.normal_object),

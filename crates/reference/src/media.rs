@@ -103,7 +103,7 @@ impl Crossing {
             let [red, green, blue] = ior_of(medium, objects);
             red != green || green != blue
         };
-        channels == CHANNELS_ALL && (disperses(self.before) || disperses(self.after))
+        channels & CHANNELS_ALL == CHANNELS_ALL && (disperses(self.before) || disperses(self.after))
     }
 }
 

@@ -21,7 +21,7 @@ use crate::surface_hit::Hit;
 use crate::volume::{Lighting, March, march};
 use kernels::layout::{
     CHANNELS_ALL, FilmPixel, MATERIAL_DIFFUSE, MATERIAL_GLASS, MOST_CROSSINGS, NONE,
-    SAMPLE_FRESNEL, WaveParams,
+    SAMPLE_FRESNEL, TRANSPARENT_GLASS, WaveParams,
 };
 use plan::{Plan, Rays};
 
@@ -30,6 +30,7 @@ use plan::{Plan, Rays};
 struct Path<R> {
     throughput: V3<R>,
     channels: u32,
+    reflected: bool,
     bounces: u32,
     crossings: u32,
     media: Media,
@@ -58,6 +59,7 @@ impl<R: Real> PixelTrace<'_, R> {
         let path = Path {
             throughput: V3::splat(R::of(1.0)),
             channels: CHANNELS_ALL,
+            reflected: false,
             bounces: 0,
             crossings: 0,
             media: Media::of(&self.plan.camera_media),
@@ -111,12 +113,33 @@ impl<R: Real> PixelTrace<'_, R> {
             film.normal_object = [nx, ny, nz, *object as f32];
             film.color[3] = 1.0;
         }
+        film.alpha = [1.0; 3];
     }
 
     fn write(&mut self, channels: u32, radiance: V3<R>) {
         for (channel, value) in radiance.to_f32().into_iter().enumerate() {
             if channels >> channel & 1 != 0 {
                 self.film.color[channel] = value;
+            }
+        }
+    }
+
+    /// A path's end in the background, which lies in `direction`.
+    fn write_background(&mut self, path: &Path<R>, direction: V3<R>, from_camera: bool) {
+        let refracted = !path.reflected;
+        let left_out = match self.params.transparent {
+            0 => false,
+            TRANSPARENT_GLASS => from_camera || refracted,
+            _ => from_camera,
+        };
+        let zero = V3::splat(R::of(0.0));
+        let background = if left_out { zero } else { path.throughput * self.background(direction) };
+        self.write(path.channels, path.emitted + background);
+        let through = if refracted { path.throughput } else { zero };
+        let alpha = (V3::splat(R::of(1.0)) - through).to_f32();
+        for (channel, value) in alpha.into_iter().enumerate() {
+            if path.channels >> channel & 1 != 0 {
+                self.film.alpha[channel] = value;
             }
         }
     }
@@ -143,13 +166,7 @@ impl<R: Real> PixelTrace<'_, R> {
                 path.throughput * transmittance(path.media.medium(objects), way, objects);
         }
         let Some((hit, object)) = hit else {
-            let left_out = from_camera && self.params.transparent != 0;
-            let behind = if left_out {
-                V3::splat(R::of(0.0))
-            } else {
-                path.throughput * self.background(ray.direction)
-            };
-            self.write(path.channels, path.emitted + behind);
+            self.write_background(&path, ray.direction, from_camera);
             if from_camera {
                 self.film.color[3] = path.coverage.to_f32();
             }
@@ -255,9 +272,10 @@ impl<R: Real> PixelTrace<'_, R> {
                     (reflects, if reflects { reflected(d, n) } else { bent.direction })
                 }
             };
+            let reflected = path.reflected || reflects;
             if !goes_on {
-                let background = throughput * self.background(direction);
-                self.write(channels, path.emitted + background);
+                let end = Path { throughput, channels, reflected, ..path.clone() };
+                self.write_background(&end, direction, false);
                 continue;
             }
             if reflects {
@@ -268,6 +286,7 @@ impl<R: Real> PixelTrace<'_, R> {
             let next = Path {
                 throughput,
                 channels,
+                reflected,
                 bounces: path.bounces + u32::from(!passes),
                 crossings: path.crossings + u32::from(passes),
                 media: if reflects { path.media.clone() } else { path.media.toggled(object) },

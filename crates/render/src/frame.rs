@@ -39,6 +39,8 @@ const EMPTY_PIXEL: FilmPixel = FilmPixel {
     position_depth: [0.0; 4],
     normal_object: [0.0; 4],
     counts: [0; 4],
+    alpha: [0.0; 3],
+    pad: 0,
 };
 
 /// What a frame cost.

@@ -252,7 +252,8 @@ pub(crate) static IMAGE: Table = Table {
             "transparent",
             Kind::Bool,
             Value("false"),
-            "Leave the background out and premultiply the colours by coverage.",
+            "Leave the background out and premultiply the colours by coverage. Behind coloured glass too, whose \
+             coverage is one a channel: AR, AG, AB.",
         ),
     ],
 };

@@ -85,6 +85,33 @@ fn provenance_names_what_made_the_picture_and_nothing_that_passes() {
 }
 
 #[test]
+fn images_that_a_scene_is_made_from_have_their_hashes() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(300));
+    let scene = "[background]\nenvironment = \"sky.png\"\n[[objects]]\npoints = \"ball.ply\"\n\
+                 [[objects]]\npoints = \"ball.ply\"\nmaterial = { texture = \"map.png\" }\n";
+    folder.write("scene.toml", scene);
+    let image = |name: &str, pixels: &[[u8; 3]; 2]| {
+        film::write_png([2, 1], pixels, &folder.path().join(name)).expect("written");
+    };
+    image("sky.png", &[[1, 2, 3], [4, 5, 6]]);
+    image("map.png", &[[7, 8, 9], [10, 11, 12]]);
+    render(&folder, &["scene.toml", "-o", "a.exr"]);
+    let a = strings(&folder, "a.exr");
+    // Of `struct.pack('<II8B', 2, 1, 1, 2, 3, 255, 4, 5, 6, 255)`, by Python's hashlib.
+    let sky = "4424e00ef6f1f4b6c7fa39c95da7a2faaf4c2cfb95aa60a344688ef4aa46796b";
+    assert_eq!(a["pointillist/environment.sha256"], sky);
+    assert!(!a.contains_key("pointillist/texture.0.sha256"), "the first object has no texture");
+    image("map.png", &[[7, 8, 9], [10, 11, 13]]);
+    render(&folder, &["scene.toml", "-o", "b.exr"]);
+    let b = strings(&folder, "b.exr");
+    let differs = |name: &String| a[name] != b[name];
+    let differing: Vec<&String> = a.keys().filter(|&name| differs(name)).collect();
+    assert_eq!(differing, ["pointillist/texture.1.sha256"]);
+    assert_eq!(a.len(), b.len());
+}
+
+#[test]
 fn info_of_a_picture_tells_windows_channels_and_provenance() {
     let folder = Folder::new();
     folder.write("ball.ply", &sphere(300));
