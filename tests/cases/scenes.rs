@@ -1,75 +1,50 @@
 //! The scenes of the repository: all are valid, and what can be rendered is the same on device and CPU.
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    reason = "tests panic, and say what they skip"
-)]
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-use harness::{Bench, assert_same_bits, render_twin, said};
-use plan::{Plan, SceneImages};
-use scene::{Albedo, ImageFile, MODELS_VARIABLE, Scene, Up};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use harness::scenes::{load_small, plan_of_scene, scene_files, stem};
+use harness::{Bench, assert_same_bits, render_twin};
+use std::path::Path;
 
-/// What makes a scene quick: a small picture of few samples.
-const SMALL: [&str; 2] = ["image.size=[64, 48]", "image.samples=2"];
-
-fn scene_files() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
-    let files = std::fs::read_dir(folder).expect("the folder of scenes");
-    let mut paths: Vec<PathBuf> = files.map(|file| file.expect("an entry").path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-    paths.sort();
-    paths
-}
-
-fn name(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
-}
-
-/// The scene, or none where it lacks a model; any other fault fails the test.
-fn load(path: &Path) -> Option<Scene> {
-    let set = SMALL.map(str::to_owned);
-    match Scene::load(path, &set) {
-        Ok(scene) => Some(scene),
-        Err(error) => {
-            let model = |line: &String| line.contains(MODELS_VARIABLE);
-            assert!(error.lines().iter().all(model), "{error}");
-            said(&format!("SKIPPED: {}: {error}", name(path)));
-            None
-        }
-    }
-}
+/// Columns and rows of a quick picture.
+const SMALL: [u32; 2] = [64, 48];
 
 fn shows_models(path: &Path) -> bool {
-    std::fs::read_to_string(path).expect("a scene").contains("\"models/")
-}
-
-fn plan(scene: &Scene) -> Plan {
-    let set = |path: &Path| points::read(path, &mut |_, _| {}).expect("a readable point file");
-    let sets: Vec<_> = scene.objects.iter().map(|object| Arc::new(set(&object.points))).collect();
-    let image = |file: &ImageFile| Arc::new(film::read_image(&file.path).expect("an image"));
-    let texture = |albedo: &Albedo| match albedo {
-        Albedo::Texture { file, .. } => Some(image(file)),
-        _ => None,
-    };
-    let images = SceneImages {
-        environment: scene.background.environment.as_ref().map(image),
-        textures: scene.objects.iter().map(|object| texture(&object.material.albedo)).collect(),
-    };
-    Plan::new(scene, &sets, &images, None, Up::Y).expect("a plan")
+    read(path).contains("\"models/")
 }
 
 #[test]
 fn every_scene_is_valid_and_says_first_what_it_shows() {
     for path in scene_files() {
-        let text = std::fs::read_to_string(&path).expect("a scene");
+        let text = read(&path);
         let first = text.lines().next().unwrap_or_default();
-        let command = format!("cargo run --release -- render scenes/{}.toml", name(&path));
+        let command = format!("cargo run --release -- render scenes/{}.toml", stem(&path));
         assert!(first.starts_with("# Shows ") && first.contains(&command), "{path:?}: {first}");
-        let loaded = load(&path).is_some();
+        let loaded = load_small(&path, SMALL).is_some();
         assert!(loaded || shows_models(&path), "{path:?} lacks a model but names none");
+    }
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+#[test]
+fn the_gallery_shows_every_scene_with_its_command_and_every_picture_is_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let page = read(&root.join("docs/gallery.md"));
+    for path in scene_files() {
+        let command = format!("render scenes/{}.toml", stem(&path));
+        assert!(page.contains(&command), "docs/gallery.md lacks '{command}'");
+    }
+    for link in page.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+        let (file, _) = link.split_once('#').unwrap_or((link, ""));
+        assert!(root.join("docs").join(file).exists(), "docs/gallery.md links '{link}'");
+    }
+    for file in std::fs::read_dir(root.join("docs/gallery")).expect("pictures") {
+        let name = file.expect("an entry").file_name().to_string_lossy().into_owned();
+        let shown = |page: &str| read(&root.join(page)).contains(&name);
+        let pages = ["docs/gallery.md", "docs/method.md", "docs/convergence.md", "README.md"];
+        assert!(pages.into_iter().any(shown), "docs/gallery/{name} is shown on no page");
     }
 }
 
@@ -79,7 +54,7 @@ fn scenes_of_generated_points_always_run_and_have_siblings_with_models() {
     let with_models = scene_files().len() - generated;
     assert!(generated >= 7 && with_models >= 6, "{generated} generated, {with_models} with models");
     for path in scene_files().iter().filter(|path| !shows_models(path)) {
-        assert!(load(path).is_some(), "{path:?}");
+        assert!(load_small(path, SMALL).is_some(), "{path:?}");
     }
 }
 
@@ -87,10 +62,10 @@ fn scenes_of_generated_points_always_run_and_have_siblings_with_models() {
 fn scenes_are_the_same_to_the_bit_on_device_and_cpu() {
     let bench = Bench::open();
     for path in scene_files() {
-        let Some(scene) = load(&path) else { continue };
-        let plan = plan(&scene);
+        let Some(scene) = load_small(&path, SMALL) else { continue };
+        let plan = plan_of_scene(&scene);
         let on_device = bench.render(&plan);
-        assert_same_bits(&name(&path), &on_device, &render_twin(&plan));
+        assert_same_bits(&stem(&path), &on_device, &render_twin(&plan));
         let finite = on_device.film.color.as_flattened().iter().all(|value| value.is_finite());
         assert!(finite, "{path:?}: a colour is no number");
         let lit = on_device.film.color.iter().filter(|color| color.iter().sum::<f32>() > 0.05);

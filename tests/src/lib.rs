@@ -10,6 +10,7 @@
 )]
 
 pub mod analytic;
+pub mod scenes;
 mod shapes;
 
 pub use shapes::{
@@ -43,6 +44,13 @@ impl Bench {
         });
         let device = Device::open(&instance, &DeviceChoice::Default).expect("a usable device");
         Self { instance, device }
+    }
+
+    /// Whether the device gives the same bits as the CPU reference: what was measured of lavapipe. Others may
+    /// contract or reorder, and differ in the last of them.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.device.info().name.contains("llvmpipe")
     }
 
     /// Builds and traces a plan on the device.
