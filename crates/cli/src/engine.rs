@@ -56,7 +56,9 @@ pub struct Frame {
     pub passes: u32,
     /// From submission to completion of all passes.
     pub trace: Duration,
-    /// The same with the picture read back.
+    /// What the driver took to make pipelines that were new; not in `trace`.
+    pub pipelines: Duration,
+    /// All of it with the picture read back.
     pub wall: Duration,
     /// Milliseconds of each kernel.
     pub kernels: Vec<(&'static str, f64)>,
@@ -167,6 +169,7 @@ impl Built {
                     film: picture.finish(),
                     passes: stats.passes,
                     trace: stats.trace,
+                    pipelines: stats.pipelines,
                     wall: started.elapsed(),
                     kernels: stats.kernels,
                     traversal: stats.traversal,
@@ -233,6 +236,7 @@ impl Frame {
             film,
             passes: 1,
             trace: elapsed,
+            pipelines: Duration::ZERO,
             wall: elapsed,
             kernels: Vec::new(),
             traversal: Traversal::default(),

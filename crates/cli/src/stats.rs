@@ -28,7 +28,7 @@ pub struct Row {
     pub build_ms: Spread,
     /// How many builds that is of. Where there are several, the first is not among them.
     pub builds: u32,
-    /// What of the first build the driver took to make pipelines.
+    /// What of the first build and frame the driver took to make pipelines; not in `trace_ms`.
     pub pipelines_ms: f64,
     /// The frame before those that are timed, with what the driver compiles at a first dispatch.
     pub warm_up_ms: Option<f64>,
@@ -173,7 +173,7 @@ impl Row {
             gpu_ms: frame.gpu_ms().map(|ms| Spread { median: ms, min: ms, max: ms }),
             build_ms: Spread::of(&[built.duration]),
             builds: 1,
-            pipelines_ms: milliseconds(built.pipelines),
+            pipelines_ms: milliseconds(built.pipelines + frame.pipelines),
             warm_up_ms: None,
             frames_per_second: 1e3 / trace_ms.median.max(1e-6),
             paper_frames_per_second: None,

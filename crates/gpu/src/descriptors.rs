@@ -59,10 +59,11 @@ impl Descriptors {
         }
     }
 
-    /// The set that binds `bound` to the kernel's slots, one for one.
+    /// The set that binds `bound` to the kernel's slots, one for one, in the layout of its pipeline.
     pub(crate) fn set(
         &mut self,
         kernel: &KernelInner,
+        layout: vk::DescriptorSetLayout,
         bound: &[Bound],
     ) -> Result<vk::DescriptorSet, GpuError> {
         self.key.clear();
@@ -71,7 +72,7 @@ impl Descriptors {
         if let Some(&set) = self.sets.get(&self.key) {
             return Ok(set);
         }
-        let set = self.allocate(kernel)?;
+        let set = self.allocate(kernel, layout)?;
         self.write(set, kernel, bound)?;
         self.sets.insert(self.key.clone(), set);
         Ok(set)
@@ -95,8 +96,12 @@ impl Descriptors {
         Ok(())
     }
 
-    fn allocate(&mut self, kernel: &KernelInner) -> Result<vk::DescriptorSet, GpuError> {
-        let layouts = [kernel.set_layout];
+    fn allocate(
+        &mut self,
+        kernel: &KernelInner,
+        layout: vk::DescriptorSetLayout,
+    ) -> Result<vk::DescriptorSet, GpuError> {
+        let layouts = [layout];
         let failed = GpuError::call("vkAllocateDescriptorSets", kernel.name);
         loop {
             let is_new = self.open_pool == self.pools.len();

@@ -6,6 +6,7 @@
 use crate::choice::{self, DeviceChoice, DeviceInfo};
 use crate::error::GpuError;
 use crate::instance::{Instance, has_extension};
+use crate::pipelines::Pipelines;
 use crate::queue::Queue;
 use ash::{ext, khr, vk};
 use gpu_allocator::vulkan::{
@@ -52,6 +53,7 @@ pub struct Device {
     debug: Option<ext::debug_utils::Device>,
     /// Nanoseconds that the driver took to make pipelines.
     pipeline_nanos: AtomicU64,
+    pipelines: Mutex<Pipelines>,
     queue: Mutex<Queue>,
     /// `None` only while the device is being made or dropped.
     allocator: Mutex<Option<Allocator>>,
@@ -110,6 +112,7 @@ impl Device {
             info,
             debug,
             pipeline_nanos: AtomicU64::new(0),
+            pipelines: Mutex::default(),
             queue: Mutex::new(Queue::new(queue)),
             allocator: Mutex::new(None),
             instance: Arc::clone(instance),
@@ -167,6 +170,11 @@ impl Device {
     pub(crate) fn queue(&self) -> MutexGuard<'_, Queue> {
         // `Queue` waits in every path, so it is idle whenever a panic lets go of the lock.
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Its pipelines, locked.
+    pub(crate) fn pipelines(&self) -> MutexGuard<'_, Pipelines> {
+        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn allocator(&self) -> MutexGuard<'_, Option<Allocator>> {
@@ -254,6 +262,7 @@ impl Drop for Device {
         let staging = queue.destroy(&self.raw);
         drop(queue);
         self.free(staging);
+        self.pipelines().destroy(&self.raw);
         // The allocator gives its memory back to the device, so it goes first.
         drop(self.allocator().take());
         // SAFETY: every object of this crate holds an `Arc` of its device, so all are destroyed;

@@ -7,11 +7,11 @@ use crate::access::Access;
 use crate::device::Device;
 use crate::error::GpuError;
 use crate::next_id;
+use crate::pipelines::{Pipeline, PipelineKey};
 use crate::spirv::{Module, ResourceKind};
 use ash::vk;
 use std::fmt;
-use std::sync::Arc;
-use std::time::Instant;
+use std::sync::{Arc, OnceLock};
 
 /// What a kernel expects at a binding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -33,17 +33,16 @@ pub(crate) enum TexelType {
     Uint,
 }
 
-/// A compute pipeline. Cloning gives another handle to the same pipeline; the last one destroys
-/// it.
+/// A compute kernel. Its pipeline is made when a pass first uses it, and then kept by the device for every
+/// kernel like it; cloning gives another handle.
 #[derive(Clone)]
 pub struct Kernel {
     pub(crate) inner: Arc<KernelInner>,
 }
 
 pub(crate) struct KernelInner {
-    pub(crate) pipeline: vk::Pipeline,
-    pub(crate) layout: vk::PipelineLayout,
-    pub(crate) set_layout: vk::DescriptorSetLayout,
+    pipeline: OnceLock<Pipeline>,
+    key: Arc<PipelineKey>,
     pub(crate) name: &'static str,
     pub(crate) id: u64,
     pub(crate) group_size: [u32; 3],
@@ -64,7 +63,8 @@ pub(crate) struct Slot {
 }
 
 impl Kernel {
-    /// Builds the pipeline of a valid SPIR-V module with one compute entry point.
+    /// A kernel of a valid SPIR-V module with one compute entry point. What the driver finds wrong with it
+    /// is an error of the submission that first uses it.
     ///
     /// All bindings are in set 0. One that the module does not use may be listed all the same.
     ///
@@ -84,11 +84,16 @@ impl Kernel {
         let slots = slots(name, bindings, &module);
         check_limits(device, name, &module, &slots, push_bytes)?;
 
-        // From here on `Drop` cleans up after a failure.
-        let mut inner = KernelInner {
-            pipeline: vk::Pipeline::null(),
-            layout: vk::PipelineLayout::null(),
-            set_layout: vk::DescriptorSetLayout::null(),
+        let key = PipelineKey {
+            name,
+            spirv: spirv.to_vec(),
+            entry: module.entry,
+            bindings: bindings.to_vec(),
+            push_bytes,
+        };
+        let inner = KernelInner {
+            pipeline: OnceLock::new(),
+            key: Arc::new(key),
             name,
             id: next_id(),
             group_size: module.group_size,
@@ -96,8 +101,6 @@ impl Kernel {
             slots,
             device: Arc::clone(device),
         };
-        inner.create_layouts()?;
-        inner.create_pipeline(spirv, &module)?;
         Ok(Self { inner: Arc::new(inner) })
     }
 
@@ -128,83 +131,13 @@ impl KernelInner {
         &self.device
     }
 
-    fn create_layouts(&mut self) -> Result<(), GpuError> {
-        let raw = &self.device.raw;
-        let bindings: Vec<_> = self
-            .slots
-            .iter()
-            .map(|slot| {
-                vk::DescriptorSetLayoutBinding::default()
-                    .binding(slot.binding)
-                    .descriptor_type(slot.kind.descriptor_type())
-                    .descriptor_count(1)
-                    .stage_flags(vk::ShaderStageFlags::COMPUTE)
-            })
-            .collect();
-        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-        // SAFETY: the binding numbers differ, as `slots` asserts, and their count is in range.
-        self.set_layout = unsafe { raw.create_descriptor_set_layout(&info, None) }
-            .map_err(GpuError::call("vkCreateDescriptorSetLayout", self.name))?;
-        self.device.set_name(self.set_layout, self.name);
-
-        let set_layouts = [self.set_layout];
-        let push = [vk::PushConstantRange::default()
-            .stage_flags(vk::ShaderStageFlags::COMPUTE)
-            .size(self.push_bytes as u32)];
-        // A range may not be empty.
-        let push = if self.push_bytes == 0 { &[] } else { &push[..] };
-        let info = vk::PipelineLayoutCreateInfo::default()
-            .set_layouts(&set_layouts)
-            .push_constant_ranges(push);
-        // SAFETY: the set layout was just made, and the push constants are within the limit.
-        self.layout = unsafe { raw.create_pipeline_layout(&info, None) }
-            .map_err(GpuError::call("vkCreatePipelineLayout", self.name))?;
-        self.device.set_name(self.layout, self.name);
-        Ok(())
-    }
-
-    fn create_pipeline(&mut self, spirv: &[u32], module: &Module) -> Result<(), GpuError> {
-        let started = Instant::now();
-        let raw = &self.device.raw;
-        let info = vk::ShaderModuleCreateInfo::default().code(spirv);
-        // SAFETY: the caller of `Kernel::new` gives a valid module, whose head was read.
-        let shader = unsafe { raw.create_shader_module(&info, None) }
-            .map_err(GpuError::call("vkCreateShaderModule", self.name))?;
-        self.device.set_name(shader, self.name);
-        let stage = vk::PipelineShaderStageCreateInfo::default()
-            .stage(vk::ShaderStageFlags::COMPUTE)
-            .module(shader)
-            .name(&module.entry);
-        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(self.layout);
-        // SAFETY: the module has this entry point; the layout was just made and holds every
-        // binding of the module. A pipeline does not need its shader module once it exists.
-        let created = unsafe {
-            let created = raw.create_compute_pipelines(vk::PipelineCache::null(), &[info], None);
-            raw.destroy_shader_module(shader, None);
-            created
-        };
-        let failed = GpuError::call("vkCreateComputePipelines", self.name);
-        let pipelines = created.map_err(|(_, result)| failed(result))?;
-        let pipeline = pipelines.first().copied();
-        self.pipeline = pipeline.ok_or_else(|| failed(vk::Result::ERROR_UNKNOWN))?;
-        self.device.add_pipeline_time(started.elapsed());
-        self.device.set_name(self.pipeline, self.name);
-        Ok(())
-    }
-}
-
-impl Drop for KernelInner {
-    fn drop(&mut self) {
-        let raw = &self.device.raw;
-        // SAFETY: created by this device in `new`; a `Recorder` holds an `Arc` of every kernel it
-        // used until its fence has signalled, so no pending work refers to it. Descriptor sets of
-        // the layout may outlive it as long as nobody updates them, and they are found by the
-        // kernel's id. Handles left null by a failed `new` are ignored by all three calls.
-        unsafe {
-            raw.destroy_pipeline(self.pipeline, None);
-            raw.destroy_pipeline_layout(self.layout, None);
-            raw.destroy_descriptor_set_layout(self.set_layout, None);
+    /// Its pipeline, made if this is the first time that any kernel of the device like it is asked.
+    pub(crate) fn pipeline(&self) -> Result<Pipeline, GpuError> {
+        if let Some(pipeline) = self.pipeline.get() {
+            return Ok(*pipeline);
         }
+        let made = self.device.pipelines().get(&self.device, &self.key)?;
+        Ok(*self.pipeline.get_or_init(|| made))
     }
 }
 

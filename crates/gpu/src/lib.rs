@@ -26,6 +26,7 @@ mod error;
 mod image;
 mod instance;
 mod kernel;
+mod pipelines;
 mod queue;
 mod recorder;
 mod spirv;

@@ -457,7 +457,8 @@ impl Recorder {
         groups: Groups<'_>,
     ) -> Result<(), GpuError> {
         let kernel = &kernel.inner;
-        let set = self.descriptors.set(kernel, bound)?;
+        let pipeline = kernel.pipeline()?;
+        let set = self.descriptors.set(kernel, pipeline.set_layout, bound)?;
         self.held.entry(kernel.id).or_insert_with(|| Arc::clone(kernel) as _);
         let mut uses = std::mem::take(&mut self.uses);
         uses.clear();
@@ -483,18 +484,18 @@ impl Recorder {
         unsafe {
             self.device.begin_label(commands, name);
             self.timer.begin(commands)?;
-            raw.cmd_bind_pipeline(commands, vk::PipelineBindPoint::COMPUTE, kernel.pipeline);
+            raw.cmd_bind_pipeline(commands, vk::PipelineBindPoint::COMPUTE, pipeline.raw);
             raw.cmd_bind_descriptor_sets(
                 commands,
                 vk::PipelineBindPoint::COMPUTE,
-                kernel.layout,
+                pipeline.layout,
                 0,
                 &[set],
                 &[],
             );
             if !self.push.is_empty() {
                 let stage = vk::ShaderStageFlags::COMPUTE;
-                raw.cmd_push_constants(commands, kernel.layout, stage, 0, &self.push);
+                raw.cmd_push_constants(commands, pipeline.layout, stage, 0, &self.push);
             }
             match groups {
                 Groups::Direct([x, y, z]) => raw.cmd_dispatch(commands, x, y, z),

@@ -46,8 +46,10 @@ const EMPTY_PIXEL: FilmPixel = FilmPixel {
 /// What a frame cost.
 #[derive(Debug, Clone, Default)]
 pub struct FrameStats {
-    /// From submission to completion of all passes, shading included.
+    /// From submission to completion of all passes, shading included; without what `pipelines` took.
     pub trace: Duration,
+    /// What the driver took to make pipelines that no frame or build of this device had used before.
+    pub pipelines: Duration,
     /// Dispatches of `grid_trace` and `disc_trace`.
     pub passes: u32,
     /// Camera rays whose paths have ended.
@@ -115,6 +117,7 @@ pub struct Renderer {
     discs: Discs,
     passes: Passes,
     recorder: Recorder,
+    device: Arc<Device>,
 }
 
 /// The pipelines of a frame.
@@ -229,6 +232,7 @@ impl Renderer {
             discs: Discs::new(device, plan.cloud.points.len() as u32)?,
             passes: Passes::new(device, records, rays)?,
             recorder: Recorder::new(device)?,
+            device: Arc::clone(device),
         })
     }
 
@@ -258,6 +262,7 @@ impl Renderer {
         watch.stage("tracing", plan.window.pixels() as u64 * u64::from(plan.samples));
         let mut pixels =
             vec![EMPTY_PIXEL; (self.film.bytes() / size_of::<FilmPixel>() as u64) as usize];
+        let made_before = self.device.pipeline_time();
         let started = Instant::now();
         self.light_points(plan, &mut stats, watch)?;
         stats.trace += started.elapsed();
@@ -274,6 +279,8 @@ impl Renderer {
             self.film.read(0, pixels)?;
             picture.put(plan, &self.surfaces.outcomes, &tile, pixels);
         }
+        stats.pipelines = self.device.pipeline_time().saturating_sub(made_before);
+        stats.trace = stats.trace.saturating_sub(stats.pipelines);
         Ok((picture, stats))
     }
 

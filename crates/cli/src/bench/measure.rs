@@ -65,6 +65,7 @@ fn timed(
     let warm_up = built.built.frame(&plan, progress)?;
     let pixels = pixel_hash(&warm_up.film);
     let warm_up_ms = milliseconds(warm_up.wall);
+    let pipelines_ms = milliseconds(built.first_pipelines + warm_up.pipelines);
     let mut frame = warm_up;
     let mut times = Times::default();
     for _ in 0..runs {
@@ -96,7 +97,7 @@ fn timed(
         gpu_ms: (!times.gpu.is_empty()).then(|| Spread::of_milliseconds(times.gpu.clone())),
         build_ms: Spread::of(&builds),
         builds: builds.len() as u32,
-        pipelines_ms: milliseconds(built.first_pipelines),
+        pipelines_ms,
         warm_up_ms: Some(warm_up_ms),
         paper_frames_per_second: case.paper_ms.map(|ms| 1e3 / ms),
         rays_per_second: RaysPerSecond::new(&row.rays, row.trace_ms.median, &times.traversal()),

@@ -1,0 +1,132 @@
+//! Pipelines: made when a pass first needs one, and kept as long as their device, so that no kernel is
+//! compiled that nothing runs, and none twice.
+
+use crate::device::Device;
+use crate::error::GpuError;
+use crate::kernel::Binding;
+use ash::vk;
+use std::collections::HashMap;
+use std::ffi::CString;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// All pipelines of a device.
+#[derive(Default)]
+pub(crate) struct Pipelines {
+    made: HashMap<Arc<PipelineKey>, Pipeline>,
+}
+
+/// What a pipeline is made from.
+#[derive(Debug, PartialEq, Eq, Hash)]
+pub(crate) struct PipelineKey {
+    pub(crate) name: &'static str,
+    pub(crate) spirv: Vec<u32>,
+    pub(crate) entry: CString,
+    pub(crate) bindings: Vec<(u32, Binding)>,
+    pub(crate) push_bytes: usize,
+}
+
+/// A pipeline and what it takes to use it. Lives as long as its device.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Pipeline {
+    pub(crate) raw: vk::Pipeline,
+    pub(crate) layout: vk::PipelineLayout,
+    pub(crate) set_layout: vk::DescriptorSetLayout,
+}
+
+impl Pipelines {
+    /// The pipeline of this key, made if it is the first time. `device` is the one that these are of.
+    pub(crate) fn get(
+        &mut self,
+        device: &Device,
+        key: &Arc<PipelineKey>,
+    ) -> Result<Pipeline, GpuError> {
+        if let Some(made) = self.made.get(key) {
+            return Ok(*made);
+        }
+        let started = Instant::now();
+        let mut pipeline = Pipeline::default();
+        if let Err(error) = pipeline.create(device, key) {
+            pipeline.destroy(&device.raw);
+            return Err(error);
+        }
+        device.add_pipeline_time(started.elapsed());
+        self.made.insert(Arc::clone(key), pipeline);
+        Ok(pipeline)
+    }
+
+    /// Destroys all of them. No pending work may use one, and none may be used again.
+    pub(crate) fn destroy(&mut self, raw: &ash::Device) {
+        for (_, pipeline) in self.made.drain() {
+            pipeline.destroy(raw);
+        }
+    }
+}
+
+impl Pipeline {
+    fn create(&mut self, device: &Device, key: &PipelineKey) -> Result<(), GpuError> {
+        let raw = &device.raw;
+        let bindings: Vec<_> = (key.bindings.iter())
+            .map(|&(binding, kind)| {
+                vk::DescriptorSetLayoutBinding::default()
+                    .binding(binding)
+                    .descriptor_type(kind.descriptor_type())
+                    .descriptor_count(1)
+                    .stage_flags(vk::ShaderStageFlags::COMPUTE)
+            })
+            .collect();
+        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+        // SAFETY: the binding numbers differ, as `Kernel::new` asserts, and their count is in range.
+        self.set_layout = unsafe { raw.create_descriptor_set_layout(&info, None) }
+            .map_err(GpuError::call("vkCreateDescriptorSetLayout", key.name))?;
+        device.set_name(self.set_layout, key.name);
+
+        let set_layouts = [self.set_layout];
+        let push = [vk::PushConstantRange::default()
+            .stage_flags(vk::ShaderStageFlags::COMPUTE)
+            .size(key.push_bytes as u32)];
+        // A range may not be empty.
+        let push = if key.push_bytes == 0 { &[] } else { &push[..] };
+        let info = vk::PipelineLayoutCreateInfo::default()
+            .set_layouts(&set_layouts)
+            .push_constant_ranges(push);
+        // SAFETY: the set layout was just made, and the push constants are within the limit.
+        self.layout = unsafe { raw.create_pipeline_layout(&info, None) }
+            .map_err(GpuError::call("vkCreatePipelineLayout", key.name))?;
+        device.set_name(self.layout, key.name);
+
+        let info = vk::ShaderModuleCreateInfo::default().code(&key.spirv);
+        // SAFETY: the caller of `Kernel::new` gives a valid module, whose head was read.
+        let shader = unsafe { raw.create_shader_module(&info, None) }
+            .map_err(GpuError::call("vkCreateShaderModule", key.name))?;
+        device.set_name(shader, key.name);
+        let stage = vk::PipelineShaderStageCreateInfo::default()
+            .stage(vk::ShaderStageFlags::COMPUTE)
+            .module(shader)
+            .name(&key.entry);
+        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(self.layout);
+        // SAFETY: the module has this entry point; the layout was just made and holds every
+        // binding of the module. A pipeline does not need its shader module once it exists.
+        let created = unsafe {
+            let created = raw.create_compute_pipelines(vk::PipelineCache::null(), &[info], None);
+            raw.destroy_shader_module(shader, None);
+            created
+        };
+        let failed = GpuError::call("vkCreateComputePipelines", key.name);
+        let pipelines = created.map_err(|(_, result)| failed(result))?;
+        let pipeline = pipelines.first().copied();
+        self.raw = pipeline.ok_or_else(|| failed(vk::Result::ERROR_UNKNOWN))?;
+        device.set_name(self.raw, key.name);
+        Ok(())
+    }
+
+    fn destroy(self, raw: &ash::Device) {
+        // SAFETY: made by this device; the caller says that nothing uses them any more. Descriptor sets of
+        // the layout may outlive it as long as nobody updates them. Null handles are ignored.
+        unsafe {
+            raw.destroy_pipeline(self.raw, None);
+            raw.destroy_pipeline_layout(self.layout, None);
+            raw.destroy_descriptor_set_layout(self.set_layout, None);
+        }
+    }
+}
