@@ -29,8 +29,9 @@ fn smoke_runs_anywhere_and_has_all_kinds_of_rays() {
     }
     let marched = |row: &serde_json::Value| row["kernels"]["march"].as_f64() > Some(0.0);
     assert!(rows.iter().any(marched), "no row has a volume");
+    // A device keeps its pipelines: rows after the first need few new ones.
+    assert!(rows[0]["pipelines_ms"].as_f64() > Some(0.0), "{}", rows[0]);
     for row in rows {
         assert!(row["gpu_ms"]["median"].as_f64() > Some(0.0), "{row}");
-        assert!(row["pipelines_ms"].as_f64() > Some(0.0), "{row}");
     }
 }

