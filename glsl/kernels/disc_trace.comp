@@ -85,6 +85,6 @@ void main() {
 
     ray.cell = alive ? ray.cell : NONE;
     ray.cursor = next - range.x;
-    store_ray(at, ray);
+    store_progress(at, ray);
     if (alive) atomicAdd(live, 1u);
 }

@@ -132,6 +132,6 @@ void main() {
 
     ray.cell = cell;
     ray.cursor = next - range.x;
-    store_ray(index, ray);
+    store_progress(index, ray);
     if (alive) atomicAdd(live, 1u);
 }

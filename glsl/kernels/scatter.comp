@@ -15,6 +15,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
+#define STATE_MOVES
 #include "layout.glsl"
 #include "environment.glsl"
 #include "math.glsl"

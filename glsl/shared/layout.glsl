@@ -482,6 +482,14 @@ struct PointLightParams { // 16 bytes
     uint volume;         // 12
 };
 
+// A ray as it travels in a queue.
+struct StateRay {        // 64 bytes
+    uvec4 position;      //  0  origin, nearest hit so far
+    uvec4 direction;     // 16  direction, cells crossed
+    uvec4 cell;          // 32  cell, cursor, tests, slot of the hit
+    uvec4 start;         // 48  the point that it left, hits to pass over
+};
+
 // At a diffuse hit.
 struct LightSum {        // 32 bytes
     vec3 sum;            //  0  irradiance by the lights before the last, each by its cosine

@@ -1,4 +1,5 @@
-// state: what a ray carries from pass to pass, in four images read and four written.
+// state: what a ray carries from pass to pass, in four images read and four written; with STATE_QUEUE, in a
+// buffer, in place, but for a kernel that moves rays (STATE_MOVES).
 //
 // Stands in for the four render targets of the paper (section 5): position, direction, cell; what a
 // ray has accumulated is in its Path. The nearest hit so far is packed among them. The rays of a wave
@@ -30,6 +31,53 @@ Ray no_ray() {
     return new_ray(vec3(0.0), vec3(0.0, 0.0, 1.0), NONE, NONE);
 }
 
+#ifdef STATE_READS
+StateRay state_of(uint ray);
+
+Ray load_ray(uint at) {
+    StateRay ray = state_of(at);
+    return Ray(uintBitsToFloat(ray.position.xyz), uintBitsToFloat(ray.position.w),
+               uintBitsToFloat(ray.direction.xyz), ray.direction.w,
+               ray.cell.x, ray.cell.y, ray.cell.z, ray.cell.w, ray.start.x, uintBitsToFloat(ray.start.y));
+}
+#endif
+
+#ifdef STATE_QUEUE
+#if defined(STATE_WRITES) && !defined(STATE_READS) || defined(STATE_MOVES)
+layout(std430, binding = STATE_OUT) writeonly buffer StateOut { StateRay state_out[]; };
+#define STATE_STORED state_out
+#else
+#define STATE_STORED state_in
+#endif
+#ifdef STATE_READS
+#if defined(STATE_WRITES) && !defined(STATE_MOVES)
+layout(std430, binding = STATE_IN) buffer StateIn { StateRay state_in[]; };
+#else
+layout(std430, binding = STATE_IN) readonly buffer StateIn { StateRay state_in[]; };
+#endif
+
+StateRay state_of(uint ray) {
+    return state_in[ray];
+}
+#endif
+
+#ifdef STATE_WRITES
+void store_ray(uint at, Ray ray) {
+    STATE_STORED[at].position = uvec4(floatBitsToUint(ray.origin), floatBitsToUint(ray.hit_t));
+    STATE_STORED[at].direction = uvec4(floatBitsToUint(ray.direction), ray.cells);
+    STATE_STORED[at].cell = uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot);
+    STATE_STORED[at].start.xy = uvec2(ray.left, floatBitsToUint(ray.after));
+}
+
+// A ray that has gone on: it starts where it did.
+void store_progress(uint at, Ray ray) {
+    STATE_STORED[at].position.w = floatBitsToUint(ray.hit_t);
+    STATE_STORED[at].direction.w = ray.cells;
+    STATE_STORED[at].cell = uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot);
+}
+#endif
+
+#else
 ivec2 texel_of(uint ray) {
     return ivec2(ray % uint(STATE_ROW), ray / uint(STATE_ROW));
 }
@@ -40,15 +88,10 @@ layout(rgba32ui, binding = STATE_IN + 1) uniform readonly uimage2D direction_in;
 layout(rgba32ui, binding = STATE_IN + 2) uniform readonly uimage2D cell_in;
 layout(rgba32ui, binding = STATE_IN + 3) uniform readonly uimage2D start_in;
 
-Ray load_ray(uint ray) {
+StateRay state_of(uint ray) {
     ivec2 texel = texel_of(ray);
-    uvec4 position = imageLoad(position_in, texel);
-    uvec4 direction = imageLoad(direction_in, texel);
-    uvec4 cell = imageLoad(cell_in, texel);
-    uvec4 start = imageLoad(start_in, texel);
-    return Ray(uintBitsToFloat(position.xyz), uintBitsToFloat(position.w),
-               uintBitsToFloat(direction.xyz), direction.w,
-               cell.x, cell.y, cell.z, cell.w, start.x, uintBitsToFloat(start.y));
+    return StateRay(imageLoad(position_in, texel), imageLoad(direction_in, texel), imageLoad(cell_in, texel),
+                    imageLoad(start_in, texel));
 }
 #endif
 
@@ -65,5 +108,11 @@ void store_ray(uint at, Ray ray) {
     imageStore(cell_out, texel, uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot));
     imageStore(start_out, texel, uvec4(ray.left, floatBitsToUint(ray.after), 0u, 0u));
 }
+
+// The images swap after a pass, so all of a ray is written.
+void store_progress(uint at, Ray ray) {
+    store_ray(at, ray);
+}
+#endif
 #endif
 #endif

@@ -5,7 +5,7 @@
 use harness::{
     Bench, Rendered, assert_same_film, fibonacci_sphere, grid_points, plan_of, render_twin, set_of,
 };
-use plan::{Diagnostic, Plan};
+use plan::{Diagnostic, Plan, RayLoop};
 use points::PointSet;
 
 fn plan(settings: &str, set: PointSet) -> Plan {
@@ -134,7 +134,7 @@ fn diagnostics_are_the_same_to_the_bit() {
     let mut plan = plan("", set_of(grid_points(60)));
     let whole = bench.render(&plan);
     assert_same_film("twin", &whole.film, &render_twin(&plan).film);
-    plan.cells_per_pass = 1;
+    (plan.cells_per_pass, plan.ray_loop) = (1, RayLoop::Images);
     assert_same_film("K = 1", &whole.film, &bench.render(&plan).film);
 
     let window = plan::Window { origin: [70, 40], size: [31, 17] };

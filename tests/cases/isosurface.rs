@@ -11,7 +11,7 @@ use harness::{
     Bench, assert_same_bits, assert_same_film, fibonacci_sphere, grid_points, plan_of, plan_with,
     random, render_twin, set_of, with_attribute,
 };
-use plan::{Plan, SceneImages};
+use plan::{Plan, RayLoop, SceneImages};
 use points::PointSet;
 use scene::{Scene, Up};
 use std::path::Path;
@@ -210,7 +210,7 @@ material = { kind = \"glass\", ior = 1.5 }
     let kinds = |kind: u32| plan.volumes.cells.iter().filter(|cell| cell.counts == kind).count();
     println!("cells of each kind: {:?}", [0, 1, 2, 3].map(kinds));
     assert!((0..4).all(|kind| kinds(kind) > 0), "each kind of cell occurs");
-    plan.cells_per_pass = 3;
+    (plan.cells_per_pass, plan.ray_loop) = (3, RayLoop::Images);
     assert_same_film("K", &whole.film, &bench.render(&plan).film);
 }
 

@@ -5,7 +5,7 @@ use harness::{
     Bench, Rendered, assert_same_bits, assert_same_film, fibonacci_sphere, plan_of, render_twin,
     set_of, wavy_sheet,
 };
-use plan::Plan;
+use plan::{Plan, RayLoop};
 use points::PointSet;
 
 const VIEW: &str = "
@@ -120,11 +120,11 @@ fn every_k_and_any_crop_give_the_same_bytes() {
     let bench = Bench::open();
     let mut plan = plan("[image]\nsize = [96, 72]");
     let whole = bench.render(&plan);
-    for k in [1, 7] {
-        plan.cells_per_pass = k;
+    for (k, form) in [(1, RayLoop::Queue), (1, RayLoop::Images), (7, RayLoop::Images)] {
+        (plan.cells_per_pass, plan.ray_loop) = (k, form);
         assert_same_film("K", &whole.film, &bench.render(&plan).film);
     }
-    plan.cells_per_pass = 0;
+    (plan.cells_per_pass, plan.ray_loop) = (0, RayLoop::Auto);
     plan.window = plan::Window { origin: [31, 17], size: [37, 43] };
     let crop = bench.render(&plan).film;
     for (i, color) in crop.color.iter().enumerate() {

@@ -87,14 +87,17 @@ fn projected_hits_are_the_same_to_the_bit() {
 #[test]
 fn projected_hits_are_the_same_by_discs_and_through_the_grid() {
     let bench = Bench::open();
-    let [grid, discs] = ["grid", "discs"].map(|primary| {
+    let forms = [("grid", "queue"), ("discs", "queue"), ("grid", "images"), ("discs", "images")];
+    let films = forms.map(|(primary, form)| {
         let text = format!(
-            "{VIEW}\n[render]\nprimary = \"{primary}\"\n[[objects]]\npoints = \"p.ply\"\n\
+            "{VIEW}\n[render]\nprimary = \"{primary}\"\nloop = \"{form}\"\n[[objects]]\npoints = \"p.ply\"\n\
              surface = {{ refine = \"project\" }}"
         );
         bench.render(&plan_of(&text, &[set_of(noisy_torus())])).film
     });
-    assert_same_film("discs", &grid, &discs);
+    for film in &films[1..] {
+        assert_same_film("discs", &films[0], film);
+    }
 }
 
 /// The exact surface does not depend on which polynomial was hit first: what `incomplete` loses at a

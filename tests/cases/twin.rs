@@ -5,7 +5,7 @@ use harness::{
     Bench, Rendered, assert_same_bits, assert_same_film, fibonacci_sphere, grid_points, plan_of,
     random, render_twin, set_of, wavy_sheet,
 };
-use plan::Diagnostic;
+use plan::{Diagnostic, RayLoop};
 use points::PointSet;
 use render::Records;
 
@@ -175,8 +175,8 @@ fn every_k_gives_the_same_bytes() {
     let mut plan = plan_of(&format!("{SMALL}\n{LIGHTS}"), &[set_of(fibonacci_sphere(10_000))]);
     let whole = bench.render(&plan);
     let mut passes = vec![whole.passes];
-    for k in [1, 4, 1_000_000] {
-        plan.cells_per_pass = k;
+    for (k, form) in [(1, RayLoop::Queue), (4, RayLoop::Images), (1_000_000, RayLoop::Images)] {
+        (plan.cells_per_pass, plan.ray_loop) = (k, form);
         let rendered = bench.render(&plan);
         assert_same_bits("K", &whole, &rendered);
         passes.push(rendered.passes);

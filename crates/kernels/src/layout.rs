@@ -974,6 +974,21 @@ pub struct LightSum {
 }
 gpu_layout!(LightSum, 32, { sum: 0, pad: 12, arriving: 16, pad_end: 28 });
 
+/// A ray as it travels in a queue; all bits as unsigned integers.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct StateRay {
+    /// Origin in centred scene space, and the nearest hit so far.
+    pub position: [u32; 4],
+    /// Unit direction, and how many cells were crossed.
+    pub direction: [u32; 4],
+    /// Cell or `NONE`, cursor in it, points tested, slot of the hit or `NONE`.
+    pub cell: [u32; 4],
+    /// The point whose surface it starts on or `NONE`, up to where hits do not count; two unused.
+    pub start: [u32; 4],
+}
+gpu_layout!(StateRay, 64, { position: 0, direction: 16, cell: 32, start: 48 });
+
 /// What one pixel saw.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -1059,6 +1074,7 @@ pub const STRUCTS: &[StructLayout] = &[
     PointLightParams::LAYOUT,
     MarchParams::LAYOUT,
     LightSum::LAYOUT,
+    StateRay::LAYOUT,
     FilmPixel::LAYOUT,
     FilmSum::LAYOUT,
     AccumulateParams::LAYOUT,

@@ -28,10 +28,14 @@ modules! {
     accumulate,
     /// The camera's ray of each pixel.
     camera_rays,
+    /// `camera_rays` for rays in a queue.
+    camera_rays_queue,
     /// Where each cell's entries begin.
     cell_offsets,
     /// What becomes of each ray of a wave.
     classify,
+    /// `classify` for rays in a queue.
+    classify_queue,
     /// Trust balls that end at rims.
     clip_balls,
     /// Screen tiles that each disc covers.
@@ -42,8 +46,12 @@ modules! {
     disc_ranges,
     /// The nearest hit among the points of a screen tile.
     disc_trace,
+    /// `disc_trace` for rays in a queue.
+    disc_trace_queue,
     /// The same, reading polynomials through a uniform texel buffer.
     disc_trace_texels,
+    /// `disc_trace_texels` for rays in a queue.
+    disc_trace_texels_queue,
     /// The local polynomial of each point.
     fit_polynomials,
     /// Cells around each trust ball.
@@ -56,16 +64,30 @@ modules! {
     grid_trace,
     /// The same for rays that start on surfaces.
     grid_trace_leaving,
+    /// `grid_trace_leaving` for rays in a queue.
+    grid_trace_leaving_queue,
     /// For those, reading polynomials through a uniform texel buffer.
     grid_trace_leaving_texels,
+    /// `grid_trace_leaving_texels` for rays in a queue.
+    grid_trace_leaving_texels_queue,
+    /// `grid_trace` for rays in a queue.
+    grid_trace_queue,
     /// From the camera, reading polynomials through a uniform texel buffer.
     grid_trace_texels,
+    /// `grid_trace_texels` for rays in a queue.
+    grid_trace_texels_queue,
     /// Where rays first meet an isosurface.
     isosurface,
+    /// `isosurface` for rays in a queue.
+    isosurface_queue,
     /// Whether shadow rays meet one.
     isosurface_shadows,
+    /// `isosurface_shadows` for rays in a queue.
+    isosurface_shadows_queue,
     /// The rays that hit a diffuse surface, one after another.
     list_lit,
+    /// `list_lit` for rays in a queue.
+    list_lit_queue,
     /// The rays of a wave that have not ended, one after another.
     list_live,
     /// The points of each cell with their positions.
@@ -74,48 +96,102 @@ modules! {
     march,
     /// Rays through volumes that lights shine into.
     march_lit,
+    /// `march_lit` for rays in a queue.
+    march_lit_queue,
+    /// `march` for rays in a queue.
+    march_queue,
     /// Shadow rays through volumes.
     march_shadows,
+    /// `march_shadows` for rays in a queue.
+    march_shadows_queue,
     /// Which rays of a wave have not ended.
     mark_live,
+    /// `mark_live` for rays in a queue.
+    mark_live_queue,
     /// What of a light's reaches the points of a volume.
     point_lights,
+    /// `point_lights` for rays in a queue.
+    point_lights_queue,
     /// Rays from the points of a volume towards a light.
     point_rays,
+    /// `point_rays` for rays in a queue.
+    point_rays_queue,
     /// One iteration of each pending hit towards the point set surface.
     refine,
+    /// `refine` for rays in a queue.
+    refine_queue,
     /// The same, reading points through a uniform texel buffer.
     refine_texels,
+    /// `refine_texels` for rays in a queue.
+    refine_texels_queue,
     /// Sends rays whose hit was refined away on to the next.
     resume,
+    /// `resume` for rays in a queue.
+    resume_queue,
     /// Prefix sums, second half.
     scan_apply,
     /// Prefix sums, first half.
     scan_reduce,
     /// Reflected and refracted rays.
     scatter,
+    /// `scatter` for rays in a queue.
+    scatter_queue,
     /// Lambert's law at the diffuse hits.
     shade,
+    /// `shade` for rays in a queue.
+    shade_queue,
     /// Rays towards a light.
     shadow_rays,
+    /// `shadow_rays` for rays in a queue.
+    shadow_rays_queue,
     /// Stable sort by one digit, first half.
     sort_count,
     /// Stable sort by one digit, second half.
     sort_scatter,
     /// Where each ray met the polynomial it hit.
     surface_hit,
+    /// `surface_hit` for rays in a queue.
+    surface_hit_queue,
 }
 
 /// Modules made of another kernel's source with macros defined: name, kernel, macros.
 pub const VARIANTS: &[(&str, &str, &[&str])] = &[
+    ("camera_rays_queue", "camera_rays", &["STATE_QUEUE"]),
+    ("classify_queue", "classify", &["STATE_QUEUE"]),
+    ("disc_trace_queue", "disc_trace", &["STATE_QUEUE"]),
     ("disc_trace_texels", "disc_trace", &["RECORDS_AS_TEXELS"]),
+    ("disc_trace_texels_queue", "disc_trace", &["RECORDS_AS_TEXELS", "STATE_QUEUE"]),
     ("grid_trace_leaving", "grid_trace", &["LEAVES"]),
+    ("grid_trace_leaving_queue", "grid_trace", &["LEAVES", "STATE_QUEUE"]),
     ("grid_trace_leaving_texels", "grid_trace", &["LEAVES", "RECORDS_AS_TEXELS"]),
+    (
+        "grid_trace_leaving_texels_queue",
+        "grid_trace",
+        &["LEAVES", "RECORDS_AS_TEXELS", "STATE_QUEUE"],
+    ),
+    ("grid_trace_queue", "grid_trace", &["STATE_QUEUE"]),
     ("grid_trace_texels", "grid_trace", &["RECORDS_AS_TEXELS"]),
+    ("grid_trace_texels_queue", "grid_trace", &["RECORDS_AS_TEXELS", "STATE_QUEUE"]),
+    ("isosurface_queue", "isosurface", &["STATE_QUEUE"]),
     ("isosurface_shadows", "isosurface", &["SHADOWS"]),
+    ("isosurface_shadows_queue", "isosurface", &["SHADOWS", "STATE_QUEUE"]),
+    ("list_lit_queue", "list_lit", &["STATE_QUEUE"]),
     ("march_lit", "march", &["LIT"]),
+    ("march_lit_queue", "march", &["LIT", "STATE_QUEUE"]),
+    ("march_queue", "march", &["STATE_QUEUE"]),
     ("march_shadows", "march", &["SHADOWS"]),
+    ("march_shadows_queue", "march", &["SHADOWS", "STATE_QUEUE"]),
+    ("mark_live_queue", "mark_live", &["STATE_QUEUE"]),
+    ("point_lights_queue", "point_lights", &["STATE_QUEUE"]),
+    ("point_rays_queue", "point_rays", &["STATE_QUEUE"]),
+    ("refine_queue", "refine", &["STATE_QUEUE"]),
     ("refine_texels", "refine", &["RECORDS_AS_TEXELS"]),
+    ("refine_texels_queue", "refine", &["RECORDS_AS_TEXELS", "STATE_QUEUE"]),
+    ("resume_queue", "resume", &["STATE_QUEUE"]),
+    ("scatter_queue", "scatter", &["STATE_QUEUE"]),
+    ("shade_queue", "shade", &["STATE_QUEUE"]),
+    ("shadow_rays_queue", "shadow_rays", &["STATE_QUEUE"]),
+    ("surface_hit_queue", "surface_hit", &["STATE_QUEUE"]),
 ];
 
 /// The kernel whose source a module is made of, and the macros it is compiled with.

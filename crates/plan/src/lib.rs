@@ -34,8 +34,8 @@ use kernels::layout::{
 };
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
 use points::{Cloud, CloudError, ObjectPoints, PointSet, bounds_of};
-pub use scene::Primary;
 use scene::{Fresnel, Light, Object, Scene, Up};
+pub use scene::{Primary, RayLoop};
 use std::sync::Arc;
 
 /// Columns of a tile at most: a row of the ray state's images.
@@ -73,6 +73,8 @@ pub struct Plan {
     pub grid_resolution: u32,
     /// Cells a ray may cross in one pass; 0: the device decides. Changes no pixel.
     pub cells_per_pass: u32,
+    /// Where the ray state lives. Changes no pixel.
+    pub ray_loop: RayLoop,
     /// How camera rays find their first hit. Changes no pixel.
     pub primary: Primary,
     /// Rays a pixel; one alone goes through its centre.
@@ -179,6 +181,7 @@ impl Plan {
             fits,
             grid_resolution: scene.render.grid_resolution,
             cells_per_pass: scene.render.cells_per_pass,
+            ray_loop: scene.render.ray_loop,
             primary: scene.render.primary,
             point_count: sets.iter().map(|set| set.len() as u64).sum(),
             volumes,

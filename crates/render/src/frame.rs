@@ -15,7 +15,7 @@ use crate::passes::{
     ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start, SurfaceHit, SurfaceHitIo,
 };
 use crate::samples::Samples;
-use crate::state::RayState;
+use crate::state::{RayLoop, RayState};
 use crate::volumes::VolumeBuffers;
 use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder, Timings};
@@ -139,21 +139,26 @@ struct Passes {
 }
 
 impl Passes {
-    fn new(device: &Arc<Device>, records: Records, rays: u32) -> Result<Self, RenderError> {
+    fn new(
+        device: &Arc<Device>,
+        records: Records,
+        rays: u32,
+        form: RayLoop,
+    ) -> Result<Self, RenderError> {
         Ok(Self {
-            camera_rays: CameraRays::new(device)?,
-            disc_trace: DiscTrace::new(device, records)?,
-            grid_trace: GridTrace::new(device, records)?,
-            surface_hit: SurfaceHit::new(device)?,
-            refine: Refine::new(device, records)?,
-            classify: Classify::new(device)?,
-            shadow_rays: ShadowRays::new(device)?,
-            shade: Shade::new(device)?,
-            scatter: Scatter::new(device)?,
-            march: March::new(device)?,
-            isosurface: Isosurface::new(device)?,
-            point_light: PointLight::new(device)?,
-            list_live: ListLive::new(device, rays)?,
+            camera_rays: CameraRays::new(device, form)?,
+            disc_trace: DiscTrace::new(device, records, form)?,
+            grid_trace: GridTrace::new(device, records, form)?,
+            surface_hit: SurfaceHit::new(device, form)?,
+            refine: Refine::new(device, records, form)?,
+            classify: Classify::new(device, form)?,
+            shadow_rays: ShadowRays::new(device, form)?,
+            shade: Shade::new(device, form)?,
+            scatter: Scatter::new(device, form)?,
+            march: March::new(device, form)?,
+            isosurface: Isosurface::new(device, form)?,
+            point_light: PointLight::new(device, form)?,
+            list_live: ListLive::new(device, rays, form)?,
             scan: Scan::new(device)?,
         })
     }
@@ -208,6 +213,7 @@ impl Renderer {
             &plan.volumes.stand_ins(),
             watch,
         )?;
+        let form = RayLoop::of(plan.ray_loop);
         let tiles = plan.tiles();
         let pixels = tiles.iter().map(Window::pixels).max().unwrap_or(1) as u64;
         let rays = tiles.iter().map(camera_wave).max().unwrap_or(1) * plan.rays_per_pixel();
@@ -227,10 +233,10 @@ impl Renderer {
             live: Buffer::new(device, "live rays", 8)?,
             wave: WaveBuffers::new(device, rays, plan.scatters())?,
             volumes: VolumeBuffers::new(device, &plan.volumes, rays)?,
-            state: RayState::new(device, rays)?,
-            shadows: RayState::new(device, shadows)?,
+            state: RayState::new(device, rays, form, plan.scatters())?,
+            shadows: RayState::new(device, shadows, form, false)?,
             discs: Discs::new(device, plan.cloud.points.len() as u32)?,
-            passes: Passes::new(device, records, rays)?,
+            passes: Passes::new(device, records, rays, form)?,
             recorder: Recorder::new(device)?,
             device: Arc::clone(device),
         })
@@ -397,7 +403,7 @@ impl Renderer {
             stats.add_kernels(&timings.passes);
             stats.traversal.add(traced, &timings.passes);
             if params.listed == 0 {
-                state.swap();
+                state.passed();
             }
             stats.passes += 1;
             let mut left = [0];
@@ -543,7 +549,7 @@ impl Renderer {
             };
             let params = WaveParams { light, ..*params };
             self.passes.shadow_rays.record(&mut self.recorder, io, &params);
-            self.shadows.swap();
+            self.shadows.passed();
             self.trace_to_the_end(plan, [params.ray_count; 2], Traced::Shadows, stats, watch)?;
             self.isosurfaces(plan, params.ray_count, true, stats, watch)?;
             self.march(plan, params.ray_count, true, stats, watch)?;

@@ -6,7 +6,7 @@
 use crate::document::{Node, Origin, Value, cut};
 use crate::error::Problem;
 use crate::keys::{Absent, DIRECTION, Key, Kind, Numbers, SCENE, Table};
-use crate::not_built::{When, not_built};
+use crate::not_built::not_built;
 use crate::read::Reader;
 
 /// More problems than anybody reads; keeps a hostile file from filling memory.
@@ -111,10 +111,7 @@ impl Checker {
     }
 
     fn value(&mut self, node: &Node, spot: &Spot<'_>, key_origin: Origin) {
-        let missing = not_built(spot.plain_path);
-        if let Some(entry) = missing
-            && matches!(entry.when, When::Present)
-        {
+        if let Some(entry) = not_built(spot.plain_path) {
             let message = format!("known but not built yet; {}", entry.instead);
             return self.report(key_origin, spot.path, message);
         }
@@ -124,12 +121,6 @@ impl Checker {
             kind => {
                 if let Err(Wrong { within, origin, message }) = scalar(node, kind, spot.key) {
                     self.report(origin, &format!("{}{within}", spot.path), message);
-                } else if let Some(entry) = missing
-                    && entry.when.covers(&node.value)
-                {
-                    let message =
-                        format!("found {}, known but not built yet; {}", node.shown, entry.instead);
-                    self.report(node.origin, spot.path, message);
                 }
             }
         }
@@ -157,16 +148,6 @@ impl Checker {
         }
         for (index, item) in items.iter().enumerate() {
             self.table(item, table, &format!("{}[{index}]", spot.path), spot.plain_path);
-        }
-    }
-}
-
-impl When {
-    fn covers(&self, value: &Value) -> bool {
-        match (self, value) {
-            (When::Present, _) => true,
-            (When::Is(names), Value::Text(text)) => names.contains(&text.as_str()),
-            _ => false,
         }
     }
 }

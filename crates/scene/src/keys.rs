@@ -287,8 +287,8 @@ pub(crate) static RENDER: Table = Table {
             "loop",
             Kind::Choice(&["images", "queue", "auto"]),
             Value("\"auto\""),
-            "Where the ray state lives: four ping-pong storage images, or compacted in buffers. \
-             Changes no pixel.",
+            "Where the ray state lives: four images that are read and four that are written, as in the paper, or a \
+             queue in a buffer, in place, which \"auto\" takes. Changes no pixel.",
         ),
         key("seed", count(0, u32::MAX as i64, ""), Value("0"), "Seed of all that is random."),
         key(

@@ -41,8 +41,7 @@ fn write(table: &Table, path: &str, out: &mut String) -> std::fmt::Result {
             Absent::Table => "its keys' defaults".into(),
         };
         let of = key.only.map_or(String::new(), |only| format!("`{only}` only. "));
-        let built = not_built(&path).map(|entry| entry.note());
-        let built = if whole { "not built yet".into() } else { built.unwrap_or("yes".into()) };
+        let built = if whole || not_built(&path).is_some() { "not built yet" } else { "yes" };
         let (name, doc, value) = (key.name, key.doc, key.kind.expected());
         writeln!(out, "| `{name}` | {of}{doc} | {value} | {absent} | {built} |")?;
     }

@@ -72,8 +72,8 @@ fn property(key: &Key, path: &str) -> Json {
     if let Absent::Words(words, _) = key.absent {
         description += &format!(" Default: {words}.");
     }
-    if let Some(entry) = not_built(path) {
-        description += &format!(" Known, {}.", entry.note());
+    if not_built(path).is_some() {
+        description += " Known, not built yet.";
     }
     schema.insert("description".into(), json!(description));
     if let Absent::Value(text) = key.absent {

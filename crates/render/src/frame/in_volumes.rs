@@ -123,7 +123,7 @@ impl Renderer {
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
         self.record_point_light(params, true);
-        self.shadows.swap();
+        self.shadows.passed();
         let traced = Traced::PastObject(plan.volumes.infos[params.volume as usize].object);
         self.trace_to_the_end(plan, [params.count; 2], traced, stats, watch)?;
         self.isosurfaces(plan, params.count, true, stats, watch)?;

@@ -1,11 +1,9 @@
 //! The pass `camera_rays`.
 
-use super::{bind_state, over_pixels, state_bindings};
-use crate::state::StateImages;
+use super::over_pixels;
+use crate::state::{RayLoop, StoredRays, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
-use kernels::layout::{
-    CAMERA_FILTER, CAMERA_PATH, CameraParams, STATE_OUT, TRACE_INFO, WAVE_PATHS,
-};
+use kernels::layout::{CAMERA_FILTER, CAMERA_PATH, CameraParams, TRACE_INFO, WAVE_PATHS};
 use kernels::spirv;
 use std::sync::Arc;
 
@@ -17,7 +15,7 @@ pub(crate) struct CameraRaysIo<'a> {
     pub filter: &'a Buffer,
     /// The path of every ray, but for its pixel.
     pub start: &'a Buffer,
-    pub state: &'a StateImages,
+    pub state: &'a StoredRays,
     pub paths: &'a Buffer,
 }
 
@@ -29,20 +27,27 @@ pub(crate) struct CameraRays {
 impl CameraRays {
     pub const NAME: &'static str = "camera_rays";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
-        let mut bindings = state_bindings(STATE_OUT).to_vec();
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+        let mut bindings = form.bindings(Touch::Writes);
         bindings.extend(
             [TRACE_INFO, CAMERA_FILTER, CAMERA_PATH, WAVE_PATHS]
                 .map(|at| (at, Binding::StorageBuffer)),
         );
         let params = size_of::<CameraParams>();
-        let kernel = Kernel::new(device, Self::NAME, &spirv::camera_rays(), &bindings, params)?;
+        let kernel = Kernel::new(
+            device,
+            Self::NAME,
+            &form.module(spirv::camera_rays, spirv::camera_rays_queue),
+            &bindings,
+            params,
+        )?;
         Ok(Self { kernel })
     }
 
     /// Records the start of every ray of a tile.
     pub fn record(&self, rec: &mut Recorder, io: CameraRaysIo<'_>, params: &CameraParams) {
-        bind_state(rec.pass(Self::NAME, &self.kernel), STATE_OUT, io.state)
+        io.state
+            .bind_written(rec.pass(Self::NAME, &self.kernel))
             .buffer(TRACE_INFO, io.grid_info)
             .buffer(WAVE_PATHS, io.paths)
             .buffer(CAMERA_FILTER, io.filter)

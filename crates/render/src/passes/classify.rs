@@ -1,11 +1,11 @@
 //! The passes `classify` and `list_lit`.
 
-use super::{bind_state, line, state_bindings};
-use crate::state::StateImages;
+use super::line;
+use crate::state::{RayLoop, StoredRays, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_FILM, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, STATE_IN, TRACE_HITS, TRACE_POLYNOMIALS,
-    WAVE_LIT, WAVE_LIT_RAYS, WAVE_NEXT, WAVE_PATHS, WaveParams,
+    SHADE_FILM, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, TRACE_HITS, TRACE_POLYNOMIALS, WAVE_LIT,
+    WAVE_LIT_RAYS, WAVE_NEXT, WAVE_PATHS, WaveParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// What the passes work on.
 #[derive(Clone, Copy)]
 pub(crate) struct ClassifyIo<'a> {
-    pub state: &'a StateImages,
+    pub state: &'a StoredRays,
     pub polynomials: &'a Buffer,
     pub hits: &'a Buffer,
     pub objects: &'a Buffer,
@@ -39,10 +39,10 @@ impl Classify {
     pub const NAME: &'static str = "classify";
     pub const LIST_LIT: &'static str = "list_lit";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
         let params = size_of::<WaveParams>();
         let kernel = |name, module: &[u32], buffers: &[u32]| {
-            let mut bindings = state_bindings(STATE_IN).to_vec();
+            let mut bindings = form.bindings(Touch::Reads);
             bindings.extend(buffers.iter().map(|&binding| (binding, Binding::StorageBuffer)));
             Kernel::new(device, name, module, &bindings, params)
         };
@@ -58,14 +58,23 @@ impl Classify {
             WAVE_NEXT,
         ];
         Ok(Self {
-            classify: kernel(Self::NAME, &spirv::classify(), &buffers)?,
-            list_lit: kernel(Self::LIST_LIT, &spirv::list_lit(), &[WAVE_LIT, WAVE_LIT_RAYS])?,
+            classify: kernel(
+                Self::NAME,
+                &form.module(spirv::classify, spirv::classify_queue),
+                &buffers,
+            )?,
+            list_lit: kernel(
+                Self::LIST_LIT,
+                &form.module(spirv::list_lit, spirv::list_lit_queue),
+                &[WAVE_LIT, WAVE_LIT_RAYS],
+            )?,
         })
     }
 
     /// Records the classes of a wave whose rays have all ended.
     pub fn record(&self, rec: &mut Recorder, io: ClassifyIo<'_>, params: &WaveParams) {
-        bind_state(rec.pass(Self::NAME, &self.classify), STATE_IN, io.state)
+        io.state
+            .bind_read(rec.pass(Self::NAME, &self.classify))
             .buffer(TRACE_POLYNOMIALS, io.polynomials)
             .buffer(TRACE_HITS, io.hits)
             .buffer(SHADE_OBJECTS, io.objects)
@@ -81,7 +90,8 @@ impl Classify {
 
     /// Records the list of rays that hit a diffuse surface; `lit` holds offsets by now.
     pub fn record_list(&self, rec: &mut Recorder, io: ClassifyIo<'_>, params: &WaveParams) {
-        bind_state(rec.pass(Self::LIST_LIT, &self.list_lit), STATE_IN, io.state)
+        io.state
+            .bind_read(rec.pass(Self::LIST_LIT, &self.list_lit))
             .buffer(WAVE_LIT, io.lit)
             .buffer(WAVE_LIT_RAYS, io.lit_rays)
             .push(params)

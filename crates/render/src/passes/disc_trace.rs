@@ -1,12 +1,12 @@
 //! The pass `disc_trace`.
 
-use super::{Records, bind_state, over_pixels, state_bindings};
+use super::{Records, over_pixels};
 use crate::discs::DiscLists;
-use crate::state::RayState;
+use crate::state::{RayLoop, RayState, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    DiscTraceParams, STATE_IN, STATE_OUT, TRACE_CELLS, TRACE_KEYS, TRACE_LIVE, TRACE_POLYNOMIALS,
-    TRACE_SLOTS, TraceParams,
+    DiscTraceParams, TRACE_CELLS, TRACE_KEYS, TRACE_LIVE, TRACE_POLYNOMIALS, TRACE_SLOTS,
+    TraceParams,
 };
 use kernels::spirv;
 use points::device::Surfaces;
@@ -29,13 +29,17 @@ pub(crate) struct DiscTrace {
 impl DiscTrace {
     pub const NAME: &'static str = "disc_trace";
 
-    pub fn new(device: &Arc<Device>, records: Records) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, records: Records, form: RayLoop) -> Result<Self, GpuError> {
         let (module, polynomials) = match records {
-            Records::Texels => (spirv::disc_trace_texels(), Binding::UniformTexelBuffer),
-            Records::Storage => (spirv::disc_trace(), Binding::StorageBuffer),
+            Records::Texels => (
+                form.module(spirv::disc_trace_texels, spirv::disc_trace_texels_queue),
+                Binding::UniformTexelBuffer,
+            ),
+            Records::Storage => {
+                (form.module(spirv::disc_trace, spirv::disc_trace_queue), Binding::StorageBuffer)
+            }
         };
-        let mut bindings = state_bindings(STATE_IN).to_vec();
-        bindings.extend(state_bindings(STATE_OUT));
+        let mut bindings = form.bindings(Touch::Updates);
         let buffers = [TRACE_CELLS, TRACE_SLOTS, TRACE_LIVE, TRACE_KEYS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         bindings.push((TRACE_POLYNOMIALS, polynomials));
@@ -55,8 +59,8 @@ impl DiscTrace {
     ) {
         let params = DiscTraceParams { ranks: io.lists.ranks, tile_size, work: params.work };
         let pass = rec.pass(Self::NAME, &self.kernel);
-        let pass = bind_state(pass, STATE_IN, &io.state.current);
-        bind_state(pass, STATE_OUT, &io.state.next)
+        io.state
+            .bind_update(pass)
             .buffer(TRACE_CELLS, &io.lists.tiles)
             .buffer(TRACE_KEYS, &io.lists.pairs.keys)
             .buffer(TRACE_SLOTS, &io.lists.pairs.slots)

@@ -1,11 +1,10 @@
 //! The pass `grid_trace`.
 
-use super::{bind_state, line, state_bindings};
-use crate::state::RayState;
+use super::line;
+use crate::state::{RayLoop, RayState, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    LIVE_RAYS, STATE_IN, STATE_OUT, TRACE_CELLS, TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS,
-    TRACE_SLOTS, TraceParams,
+    LIVE_RAYS, TRACE_CELLS, TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS, TRACE_SLOTS, TraceParams,
 };
 use kernels::spirv;
 use points::device::Surfaces;
@@ -64,18 +63,27 @@ pub(crate) struct GridTrace {
 impl GridTrace {
     pub const NAME: &'static str = "grid_trace";
 
-    pub fn new(device: &Arc<Device>, records: Records) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, records: Records, form: RayLoop) -> Result<Self, GpuError> {
         let (modules, polynomials) = match records {
             Records::Texels => (
-                [spirv::grid_trace_texels(), spirv::grid_trace_leaving_texels()],
+                [
+                    form.module(spirv::grid_trace_texels, spirv::grid_trace_texels_queue),
+                    form.module(
+                        spirv::grid_trace_leaving_texels,
+                        spirv::grid_trace_leaving_texels_queue,
+                    ),
+                ],
                 Binding::UniformTexelBuffer,
             ),
-            Records::Storage => {
-                ([spirv::grid_trace(), spirv::grid_trace_leaving()], Binding::StorageBuffer)
-            }
+            Records::Storage => (
+                [
+                    form.module(spirv::grid_trace, spirv::grid_trace_queue),
+                    form.module(spirv::grid_trace_leaving, spirv::grid_trace_leaving_queue),
+                ],
+                Binding::StorageBuffer,
+            ),
         };
-        let mut bindings = state_bindings(STATE_IN).to_vec();
-        bindings.extend(state_bindings(STATE_OUT));
+        let mut bindings = form.bindings(Touch::Updates);
         let buffers = [TRACE_INFO, TRACE_CELLS, TRACE_SLOTS, TRACE_LIVE, LIVE_RAYS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         bindings.push((TRACE_POLYNOMIALS, polynomials));
@@ -97,11 +105,12 @@ impl GridTrace {
             Start::Surface => &self.leaving,
         };
         let pass = rec.pass(Self::NAME, kernel);
-        let pass = bind_state(pass, STATE_IN, &io.state.current);
         // Listed rays stay where they are, and the others with them.
-        let out = if params.listed != 0 { &io.state.current } else { &io.state.next };
-        bind_state(pass, STATE_OUT, out)
-            .buffer(TRACE_INFO, &io.surfaces.grid_info)
+        let pass = match params.listed {
+            0 => io.state.bind_update(pass),
+            _ => io.state.current.bind_in_place(pass),
+        };
+        pass.buffer(TRACE_INFO, &io.surfaces.grid_info)
             .buffer(TRACE_CELLS, &io.surfaces.cells)
             .buffer(TRACE_SLOTS, &io.surfaces.slots)
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)

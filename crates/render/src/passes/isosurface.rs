@@ -1,12 +1,12 @@
 //! The pass `isosurface`.
 
-use super::{bind_state, line, state_bindings};
-use crate::state::StateImages;
+use super::line;
+use crate::state::{RayLoop, StoredRays, Touch};
 use crate::volumes::VolumeBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
     ISO_SEARCHES, MARCH_CELLS, MARCH_LENGTHS, MARCH_POINTS, MARCH_STOPS, MARCH_VOLUMES,
-    MarchParams, STATE_IN, STATE_OUT, TRACE_HITS, TRACE_LIVE, WAVE_LIGHT_SUMS, WAVE_PATHS,
+    MarchParams, TRACE_HITS, TRACE_LIVE, WAVE_LIGHT_SUMS, WAVE_PATHS,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy)]
 pub(crate) struct IsosurfaceIo<'a> {
     /// Read and, for rays that meet an isosurface, written in place.
-    pub state: &'a StateImages,
+    pub state: &'a StoredRays,
     pub volumes: &'a VolumeBuffers,
     pub paths: &'a Buffer,
     /// One u32, zero before: how many rays are not done.
@@ -41,11 +41,10 @@ pub(crate) struct Isosurface {
 impl Isosurface {
     pub const NAME: &'static str = "isosurface";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
         let params = size_of::<MarchParams>();
         let kernel = |module: &[u32], of: u32| {
-            let mut bindings = state_bindings(STATE_IN).to_vec();
-            bindings.extend(state_bindings(STATE_OUT));
+            let mut bindings = form.bindings(Touch::Updates);
             let buffers = [
                 TRACE_LIVE,
                 WAVE_PATHS,
@@ -61,8 +60,11 @@ impl Isosurface {
             Kernel::new(device, Self::NAME, module, &bindings, params)
         };
         Ok(Self {
-            wave: kernel(&spirv::isosurface(), TRACE_HITS)?,
-            shadows: kernel(&spirv::isosurface_shadows(), WAVE_LIGHT_SUMS)?,
+            wave: kernel(&form.module(spirv::isosurface, spirv::isosurface_queue), TRACE_HITS)?,
+            shadows: kernel(
+                &form.module(spirv::isosurface_shadows, spirv::isosurface_shadows_queue),
+                WAVE_LIGHT_SUMS,
+            )?,
         })
     }
 
@@ -72,8 +74,8 @@ impl Isosurface {
             Searching::Wave { hits } => (&self.wave, TRACE_HITS, hits),
             Searching::Shadows { light_sums } => (&self.shadows, WAVE_LIGHT_SUMS, light_sums),
         };
-        let pass = bind_state(rec.pass(Self::NAME, kernel), STATE_IN, io.state);
-        bind_state(pass, STATE_OUT, io.state)
+        io.state
+            .bind_in_place(rec.pass(Self::NAME, kernel))
             .buffer(TRACE_LIVE, io.live)
             .buffer(WAVE_PATHS, io.paths)
             .buffer(MARCH_VOLUMES, &io.volumes.infos)

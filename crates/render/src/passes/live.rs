@@ -1,9 +1,9 @@
 //! The passes `mark_live` and `list_live`.
 
-use super::{bind_state, line, state_bindings};
-use crate::state::StateImages;
+use super::line;
+use crate::state::{RayLoop, StoredRays, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
-use kernels::layout::{LIVE_OFFSETS, LIVE_RAYS, STATE_IN, TraceParams};
+use kernels::layout::{LIVE_OFFSETS, LIVE_RAYS, TraceParams};
 use kernels::spirv;
 use points::device::Scan;
 use std::sync::Arc;
@@ -24,11 +24,17 @@ impl ListLive {
     pub const MARK: &'static str = "mark_live";
 
     /// For waves of so many rays.
-    pub fn new(device: &Arc<Device>, rays: u32) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, rays: u32, form: RayLoop) -> Result<Self, GpuError> {
         let params = size_of::<TraceParams>();
-        let mut bindings = state_bindings(STATE_IN).to_vec();
+        let mut bindings = form.bindings(Touch::Reads);
         bindings.push((LIVE_OFFSETS, Binding::StorageBuffer));
-        let mark = Kernel::new(device, Self::MARK, &spirv::mark_live(), &bindings, params)?;
+        let mark = Kernel::new(
+            device,
+            Self::MARK,
+            &form.module(spirv::mark_live, spirv::mark_live_queue),
+            &bindings,
+            params,
+        )?;
         let bindings = [LIVE_OFFSETS, LIVE_RAYS].map(|at| (at, Binding::StorageBuffer));
         Ok(Self {
             mark,
@@ -41,8 +47,9 @@ impl ListLive {
     }
 
     /// Records the list of a wave's live rays; `params` has all of the wave's.
-    pub fn record(&self, rec: &mut Recorder, state: &StateImages, params: &TraceParams) {
-        bind_state(rec.pass(Self::MARK, &self.mark), STATE_IN, state)
+    pub fn record(&self, rec: &mut Recorder, state: &StoredRays, params: &TraceParams) {
+        state
+            .bind_read(rec.pass(Self::MARK, &self.mark))
             .buffer(LIVE_OFFSETS, &self.offsets)
             .push(params)
             .dispatch(line(params.ray_count));

@@ -1,12 +1,12 @@
 //! The pass `march`.
 
-use super::{bind_state, line, state_bindings};
-use crate::state::StateImages;
+use super::line;
+use crate::state::{RayLoop, StoredRays, Touch};
 use crate::volumes::VolumeBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
     MARCH_CELLS, MARCH_LENGTHS, MARCH_LIGHT, MARCH_POINTS, MARCH_STATE, MARCH_STOPS, MARCH_VISIBLE,
-    MARCH_VOLUMES, MarchParams, SHADE_LIGHTS, SHADE_OBJECTS, STATE_IN, TRACE_HITS, TRACE_LIVE,
+    MARCH_VOLUMES, MarchParams, SHADE_LIGHTS, SHADE_OBJECTS, TRACE_HITS, TRACE_LIVE,
     WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS,
 };
 use kernels::spirv;
@@ -24,7 +24,7 @@ pub(crate) enum Marched<'a> {
 /// What the pass works on.
 #[derive(Clone, Copy)]
 pub(crate) struct MarchIo<'a> {
-    pub state: &'a StateImages,
+    pub state: &'a StoredRays,
     pub volumes: &'a VolumeBuffers,
     pub paths: &'a Buffer,
     /// One u32, zero before: how many rays are not done.
@@ -42,10 +42,10 @@ pub(crate) struct March {
 impl March {
     pub const NAME: &'static str = "march";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
         let params = size_of::<MarchParams>();
         let kernel = |module: &[u32], more: &[u32]| {
-            let mut bindings = state_bindings(STATE_IN).to_vec();
+            let mut bindings = form.bindings(Touch::Reads);
             let buffers = [
                 TRACE_LIVE,
                 WAVE_PATHS,
@@ -61,12 +61,18 @@ impl March {
             Kernel::new(device, Self::NAME, module, &bindings, params)
         };
         Ok(Self {
-            wave: kernel(&spirv::march(), &[TRACE_HITS, SHADE_OBJECTS])?,
+            wave: kernel(
+                &form.module(spirv::march, spirv::march_queue),
+                &[TRACE_HITS, SHADE_OBJECTS],
+            )?,
             lit: kernel(
-                &spirv::march_lit(),
+                &form.module(spirv::march_lit, spirv::march_lit_queue),
                 &[TRACE_HITS, SHADE_OBJECTS, SHADE_LIGHTS, MARCH_LIGHT, MARCH_VISIBLE],
             )?,
-            shadows: kernel(&spirv::march_shadows(), &[WAVE_LIT_RAYS, WAVE_LIGHT_SUMS])?,
+            shadows: kernel(
+                &form.module(spirv::march_shadows, spirv::march_shadows_queue),
+                &[WAVE_LIT_RAYS, WAVE_LIGHT_SUMS],
+            )?,
         })
     }
 
@@ -77,7 +83,9 @@ impl March {
             Marched::Wave { lights: Some(_), .. } => &self.lit,
             Marched::Shadows { .. } => &self.shadows,
         };
-        let pass = bind_state(rec.pass(Self::NAME, kernel), STATE_IN, io.state)
+        let pass = io
+            .state
+            .bind_read(rec.pass(Self::NAME, kernel))
             .buffer(TRACE_LIVE, io.live)
             .buffer(WAVE_PATHS, io.paths)
             .buffer(MARCH_VOLUMES, &io.volumes.infos)

@@ -39,22 +39,11 @@ pub(crate) use shade::{Shade, ShadeIo};
 pub(crate) use shadow_rays::{ShadowRays, ShadowRaysIo};
 pub(crate) use surface_hit::{SurfaceHit, SurfaceHitIo};
 
-use crate::state::StateImages;
-use gpu::{Binding, PassBuilder};
 use kernels::layout::TILE_GROUP;
 use points::device::line;
 
 /// Pixels that a workgroup covers along each side (`tile_pixel` in `glsl/shared/index.glsl`).
 const TILE_EDGE: u32 = 8;
-
-/// The four bindings of a ray state that begin at `first`.
-fn state_bindings(first: u32) -> [(u32, Binding); 4] {
-    [0, 1, 2, 3].map(|i| (first + i, Binding::StorageImage))
-}
-
-fn bind_state<'a>(pass: PassBuilder<'a>, first: u32, images: &StateImages) -> PassBuilder<'a> {
-    (first..).zip(images).fold(pass, |pass, (binding, image)| pass.image(binding, image))
-}
 
 /// Invocations for a tile of pixels: a row of [`TILE_GROUP`] for each 8 × 8 of them.
 fn over_pixels(size: [u32; 2]) -> [u32; 3] {

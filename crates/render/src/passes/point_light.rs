@@ -1,13 +1,12 @@
 //! The passes `point_rays` and `point_lights`.
 
-use super::{bind_state, line, state_bindings};
-use crate::state::RayState;
+use super::line;
+use crate::state::{RayLoop, RayState, Touch};
 use crate::volumes::VolumeBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
     MARCH_CELLS, MARCH_LENGTHS, MARCH_POINTS, MARCH_STOPS, MARCH_VISIBLE, MARCH_VOLUMES,
-    PointLightParams, SHADE_LIGHTS, STATE_IN, STATE_OUT, TRACE_INFO, WAVE_LIGHT_SUMS,
-    WAVE_LIT_RAYS, WAVE_PATHS,
+    PointLightParams, SHADE_LIGHTS, TRACE_INFO, WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -34,15 +33,15 @@ impl PointLight {
     pub const RAYS: &'static str = "point_rays";
     pub const LIGHTS: &'static str = "point_lights";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
         let params = size_of::<PointLightParams>();
-        let with = |state: u32, buffers: &[u32]| {
-            let mut bindings = state_bindings(state).to_vec();
+        let with = |touch: Touch, buffers: &[u32]| {
+            let mut bindings = form.bindings(touch);
             bindings.extend(buffers.iter().map(|&binding| (binding, Binding::StorageBuffer)));
             bindings
         };
         let rays = with(
-            STATE_OUT,
+            Touch::Writes,
             &[
                 TRACE_INFO,
                 SHADE_LIGHTS,
@@ -56,16 +55,30 @@ impl PointLight {
                 WAVE_LIGHT_SUMS,
             ],
         );
-        let lights = with(STATE_IN, &[WAVE_LIGHT_SUMS, MARCH_VISIBLE]);
+        let lights = with(Touch::Reads, &[WAVE_LIGHT_SUMS, MARCH_VISIBLE]);
         Ok(Self {
-            rays: Kernel::new(device, Self::RAYS, &spirv::point_rays(), &rays, params)?,
-            lights: Kernel::new(device, Self::LIGHTS, &spirv::point_lights(), &lights, params)?,
+            rays: Kernel::new(
+                device,
+                Self::RAYS,
+                &form.module(spirv::point_rays, spirv::point_rays_queue),
+                &rays,
+                params,
+            )?,
+            lights: Kernel::new(
+                device,
+                Self::LIGHTS,
+                &form.module(spirv::point_lights, spirv::point_lights_queue),
+                &lights,
+                params,
+            )?,
         })
     }
 
     /// Records the rays towards one light; the caller then swaps their state.
     pub fn record_rays(&self, rec: &mut Recorder, io: PointLightIo<'_>, params: &PointLightParams) {
-        bind_state(rec.pass(Self::RAYS, &self.rays), STATE_OUT, &io.shadows.next)
+        io.shadows
+            .started()
+            .bind_written(rec.pass(Self::RAYS, &self.rays))
             .buffer(TRACE_INFO, io.grid_info)
             .buffer(SHADE_LIGHTS, io.lights)
             .buffer(MARCH_VOLUMES, &io.volumes.infos)
@@ -87,7 +100,9 @@ impl PointLight {
         io: PointLightIo<'_>,
         params: &PointLightParams,
     ) {
-        bind_state(rec.pass(Self::LIGHTS, &self.lights), STATE_IN, &io.shadows.current)
+        io.shadows
+            .current
+            .bind_read(rec.pass(Self::LIGHTS, &self.lights))
             .buffer(WAVE_LIGHT_SUMS, io.light_sums)
             .buffer(MARCH_VISIBLE, &io.volumes.visible)
             .push(params)

@@ -1,11 +1,11 @@
 //! The passes `refine` and `resume`.
 
-use super::{Records, bind_state, line, state_bindings};
-use crate::state::StateImages;
+use super::{Records, line};
+use crate::state::{RayLoop, StoredRays, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    REFINE_OFFSETS, REFINE_OUTCOMES, REFINE_POINTS, SHADE_OBJECTS, STATE_IN, STATE_OUT, TRACE_HITS,
-    TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS, TraceParams,
+    REFINE_OFFSETS, REFINE_OUTCOMES, REFINE_POINTS, SHADE_OBJECTS, TRACE_HITS, TRACE_INFO,
+    TRACE_LIVE, TRACE_POLYNOMIALS, TraceParams,
 };
 use kernels::spirv;
 use points::device::{PointCells, Surfaces};
@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub(crate) struct RefineIo<'a> {
     pub surfaces: &'a Surfaces,
     pub point_cells: &'a PointCells,
-    pub state: &'a StateImages,
+    pub state: &'a StoredRays,
     pub objects: &'a Buffer,
     pub hits: &'a Buffer,
     /// Two u32, zero before: hits pending still, hits rejected.
@@ -33,9 +33,9 @@ impl Refine {
     pub const NAME: &'static str = "refine";
     pub const RESUME: &'static str = "resume";
 
-    pub fn new(device: &Arc<Device>, records: Records) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, records: Records, form: RayLoop) -> Result<Self, GpuError> {
         let params = size_of::<TraceParams>();
-        let mut bindings = state_bindings(STATE_IN).to_vec();
+        let mut bindings = form.bindings(Touch::Reads);
         let buffers = [
             TRACE_INFO,
             TRACE_POLYNOMIALS,
@@ -47,22 +47,33 @@ impl Refine {
         ];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         let (module, points) = match records {
-            Records::Texels => (spirv::refine_texels(), Binding::UniformTexelBuffer),
-            Records::Storage => (spirv::refine(), Binding::StorageBuffer),
+            Records::Texels => (
+                form.module(spirv::refine_texels, spirv::refine_texels_queue),
+                Binding::UniformTexelBuffer,
+            ),
+            Records::Storage => {
+                (form.module(spirv::refine, spirv::refine_queue), Binding::StorageBuffer)
+            }
         };
         bindings.push((REFINE_POINTS, points));
         let refine = Kernel::new(device, Self::NAME, &module, &bindings, params)?;
-        let mut bindings = state_bindings(STATE_IN).to_vec();
-        bindings.extend(state_bindings(STATE_OUT));
+        let mut bindings = form.bindings(Touch::Updates);
         let buffers = [TRACE_INFO, TRACE_HITS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
-        let resume = Kernel::new(device, Self::RESUME, &spirv::resume(), &bindings, params)?;
+        let resume = Kernel::new(
+            device,
+            Self::RESUME,
+            &form.module(spirv::resume, spirv::resume_queue),
+            &bindings,
+            params,
+        )?;
         Ok(Self { refine, resume })
     }
 
     /// Records one iteration.
     pub fn record(&self, rec: &mut Recorder, io: RefineIo<'_>, params: &TraceParams) {
-        bind_state(rec.pass(Self::NAME, &self.refine), STATE_IN, io.state)
+        io.state
+            .bind_read(rec.pass(Self::NAME, &self.refine))
             .buffer(TRACE_INFO, &io.surfaces.grid_info)
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
             .buffer(TRACE_LIVE, io.live)
@@ -80,12 +91,12 @@ impl Refine {
         &self,
         rec: &mut Recorder,
         surfaces: &Surfaces,
-        state: &StateImages,
+        state: &StoredRays,
         hits: &Buffer,
         params: &TraceParams,
     ) {
-        let pass = bind_state(rec.pass(Self::RESUME, &self.resume), STATE_IN, state);
-        bind_state(pass, STATE_OUT, state)
+        state
+            .bind_in_place(rec.pass(Self::RESUME, &self.resume))
             .buffer(TRACE_INFO, &surfaces.grid_info)
             .buffer(TRACE_HITS, hits)
             .push(params)

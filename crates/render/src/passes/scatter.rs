@@ -1,11 +1,11 @@
 //! The pass `scatter`.
 
-use super::{bind_state, line, state_bindings};
-use crate::state::RayState;
+use super::line;
+use crate::state::{RayLoop, RayState, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_FILM, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, STATE_IN, STATE_OUT, TRACE_HITS,
-    TRACE_INFO, TRACE_POLYNOMIALS, WAVE_NEXT, WAVE_NEXT_PATHS, WAVE_PATHS, WAVE_TALLY, WaveParams,
+    SHADE_FILM, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, TRACE_HITS, TRACE_INFO,
+    TRACE_POLYNOMIALS, WAVE_NEXT, WAVE_NEXT_PATHS, WAVE_PATHS, WAVE_TALLY, WaveParams,
 };
 use kernels::spirv;
 use points::device::Surfaces;
@@ -37,9 +37,8 @@ pub(crate) struct Scatter {
 impl Scatter {
     pub const NAME: &'static str = "scatter";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
-        let mut bindings = state_bindings(STATE_IN).to_vec();
-        bindings.extend(state_bindings(STATE_OUT));
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+        let mut bindings = form.bindings(Touch::Moves);
         let buffers = [
             TRACE_INFO,
             TRACE_POLYNOMIALS,
@@ -55,14 +54,20 @@ impl Scatter {
         ];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         let params = size_of::<WaveParams>();
-        let kernel = Kernel::new(device, Self::NAME, &spirv::scatter(), &bindings, params)?;
+        let kernel = Kernel::new(
+            device,
+            Self::NAME,
+            &form.module(spirv::scatter, spirv::scatter_queue),
+            &bindings,
+            params,
+        )?;
         Ok(Self { kernel })
     }
 
     /// Records the next wave; the caller then swaps ray state and paths.
     pub fn record(&self, rec: &mut Recorder, io: ScatterIo<'_>, params: &WaveParams) {
-        let pass = bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, &io.state.current);
-        bind_state(pass, STATE_OUT, &io.state.next)
+        io.state
+            .bind_move(rec.pass(Self::NAME, &self.kernel))
             .buffer(TRACE_INFO, &io.surfaces.grid_info)
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
             .buffer(TRACE_HITS, io.hits)

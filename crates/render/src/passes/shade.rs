@@ -1,10 +1,10 @@
 //! The pass `shade`.
 
-use super::{AlbedoIo, bind_state, line, state_bindings};
-use crate::state::StateImages;
+use super::{AlbedoIo, line};
+use crate::state::{RayLoop, StoredRays, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_FILM, STATE_IN, TRACE_HITS, WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS, WaveParams,
+    SHADE_FILM, TRACE_HITS, WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS, WaveParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy)]
 pub(crate) struct ShadeIo<'a> {
     /// The shadow rays, as those towards the last light left them.
-    pub shadows: &'a StateImages,
+    pub shadows: &'a StoredRays,
     pub albedos: AlbedoIo<'a>,
     pub hits: &'a Buffer,
     pub film: &'a Buffer,
@@ -30,19 +30,25 @@ pub(crate) struct Shade {
 impl Shade {
     pub const NAME: &'static str = "shade";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
-        let mut bindings = state_bindings(STATE_IN).to_vec();
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+        let mut bindings = form.bindings(Touch::Reads);
         bindings.extend(AlbedoIo::BINDINGS);
         let buffers = [TRACE_HITS, SHADE_FILM, WAVE_PATHS, WAVE_LIT_RAYS, WAVE_LIGHT_SUMS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         let params = size_of::<WaveParams>();
-        let kernel = Kernel::new(device, Self::NAME, &spirv::shade(), &bindings, params)?;
+        let kernel = Kernel::new(
+            device,
+            Self::NAME,
+            &form.module(spirv::shade, spirv::shade_queue),
+            &bindings,
+            params,
+        )?;
         Ok(Self { kernel })
     }
 
     /// Records the shading of a wave's diffuse hits, once every light has been asked.
     pub fn record(&self, rec: &mut Recorder, io: ShadeIo<'_>, params: &WaveParams) {
-        let pass = bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, io.shadows);
+        let pass = io.shadows.bind_read(rec.pass(Self::NAME, &self.kernel));
         io.albedos
             .bind(pass)
             .buffer(TRACE_HITS, io.hits)

@@ -1,11 +1,11 @@
 //! The pass `shadow_rays`.
 
-use super::{bind_state, line, state_bindings};
-use crate::state::RayState;
+use super::line;
+use crate::state::{RayLoop, RayState, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_FILM, SHADE_LIGHTS, STATE_IN, STATE_OUT, TRACE_HITS, TRACE_INFO, WAVE_LIGHT_SUMS,
-    WAVE_LIT_RAYS, WAVE_PATHS, WAVE_TALLY, WaveParams,
+    SHADE_FILM, SHADE_LIGHTS, TRACE_HITS, TRACE_INFO, WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS,
+    WAVE_TALLY, WaveParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -34,9 +34,8 @@ pub(crate) struct ShadowRays {
 impl ShadowRays {
     pub const NAME: &'static str = "shadow_rays";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
-        let mut bindings = state_bindings(STATE_IN).to_vec();
-        bindings.extend(state_bindings(STATE_OUT));
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+        let mut bindings = form.bindings(Touch::Updates);
         let buffers = [
             TRACE_INFO,
             TRACE_HITS,
@@ -49,14 +48,20 @@ impl ShadowRays {
         ];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         let params = size_of::<WaveParams>();
-        let kernel = Kernel::new(device, Self::NAME, &spirv::shadow_rays(), &bindings, params)?;
+        let kernel = Kernel::new(
+            device,
+            Self::NAME,
+            &form.module(spirv::shadow_rays, spirv::shadow_rays_queue),
+            &bindings,
+            params,
+        )?;
         Ok(Self { kernel })
     }
 
     /// Records the rays towards one light; the caller then swaps their state.
     pub fn record(&self, rec: &mut Recorder, io: ShadowRaysIo<'_>, params: &WaveParams) {
-        let pass = bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, &io.shadows.current);
-        bind_state(pass, STATE_OUT, &io.shadows.next)
+        io.shadows
+            .bind_update(rec.pass(Self::NAME, &self.kernel))
             .buffer(TRACE_INFO, io.grid_info)
             .buffer(TRACE_HITS, io.hits)
             .buffer(SHADE_LIGHTS, io.lights)

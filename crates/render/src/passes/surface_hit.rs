@@ -1,11 +1,11 @@
 //! The pass `surface_hit`.
 
-use super::{bind_state, line, state_bindings};
-use crate::state::StateImages;
+use super::line;
+use crate::state::{RayLoop, StoredRays, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_OBJECTS, STATE_IN, TRACE_CELLS, TRACE_HITS, TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS,
-    TRACE_SLOTS, TraceParams,
+    SHADE_OBJECTS, TRACE_CELLS, TRACE_HITS, TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS, TRACE_SLOTS,
+    TraceParams,
 };
 use kernels::spirv;
 use points::device::Surfaces;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// What the pass works on.
 pub(crate) struct SurfaceHitIo<'a> {
-    pub state: &'a StateImages,
+    pub state: &'a StoredRays,
     pub surfaces: &'a Surfaces,
     pub objects: &'a Buffer,
     /// Zero before a tile's first time.
@@ -30,8 +30,8 @@ pub(crate) struct SurfaceHit {
 impl SurfaceHit {
     pub const NAME: &'static str = "surface_hit";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
-        let mut bindings = state_bindings(STATE_IN).to_vec();
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+        let mut bindings = form.bindings(Touch::Reads);
         let buffers = [
             TRACE_INFO,
             TRACE_CELLS,
@@ -43,13 +43,20 @@ impl SurfaceHit {
         ];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         let params = size_of::<TraceParams>();
-        let kernel = Kernel::new(device, Self::NAME, &spirv::surface_hit(), &bindings, params)?;
+        let kernel = Kernel::new(
+            device,
+            Self::NAME,
+            &form.module(spirv::surface_hit, spirv::surface_hit_queue),
+            &bindings,
+            params,
+        )?;
         Ok(Self { kernel })
     }
 
     /// Records the hits of a tile whose rays have all ended.
     pub fn record(&self, rec: &mut Recorder, io: SurfaceHitIo<'_>, params: &TraceParams) {
-        bind_state(rec.pass(Self::NAME, &self.kernel), STATE_IN, io.state)
+        io.state
+            .bind_read(rec.pass(Self::NAME, &self.kernel))
             .buffer(TRACE_INFO, &io.surfaces.grid_info)
             .buffer(TRACE_CELLS, &io.surfaces.cells)
             .buffer(TRACE_SLOTS, &io.surfaces.slots)
