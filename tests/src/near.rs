@@ -55,5 +55,7 @@ fn same_surface(p: &Polynomial, q: &Polynomial) -> bool {
 }
 
 fn far(a: &[f32], b: &[f32]) -> bool {
-    a.iter().zip(b).any(|(a, b)| a != b && !((a - b).abs() <= FAR * a.abs().max(b.abs()).max(1.0)))
+    let near =
+        |(a, b): (&f32, &f32)| a == b || (a - b).abs() <= FAR * a.abs().max(b.abs()).max(1.0);
+    !a.iter().zip(b).all(near) // so that NaN is far from everything
 }

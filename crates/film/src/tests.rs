@@ -239,7 +239,7 @@ fn alpha_by_channel_is_written_by_name_and_its_mean_is_a_png_s() {
     film.channel_alpha = Some(vec![[0.25, 0.5, 0.75]]);
     let path = folder.path().join("a.exr");
     write(&film, &provenance(), &path).unwrap();
-    let read = crate::read_exr(&path).unwrap();
+    let read = read_exr(&path).unwrap();
     for (name, value) in [("A", 1.0), ("AR", 0.25), ("AG", 0.5), ("AB", 0.75)] {
         assert_eq!(read.channels[name], [value], "{name}");
     }
