@@ -17,10 +17,10 @@
 #include "environment.glsl"
 #include "math.glsl"
 #include "state.glsl"
+#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
 layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
@@ -55,7 +55,7 @@ void main() {
     Ray ray = load_ray(at);
     Hit hit = hits[at];
     bool found = ray.hit_slot != NONE;
-    uint object = found ? polynomials[ray.hit_slot].object : NONE;
+    uint object = found ? object_of(ray.hit_slot) : NONE;
     vec3 throughput = paths[at].throughput;
     if (paths[at].media_count > 0u) {
         throughput *= transmittance(medium_without(at, NONE), found ? hit.t : NO_HIT);

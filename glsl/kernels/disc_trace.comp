@@ -17,6 +17,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
+#define LISTS // of screen tiles, in place of cells
 #include "layout.glsl"
 #include "math.glsl"
 #include "disc.glsl"
@@ -26,13 +27,23 @@
 #include "index.glsl"
 
 layout(local_size_x = TILE_GROUP) in;
-layout(std430, binding = TRACE_CELLS) readonly buffer Tiles { uvec2 tiles[]; };
-layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
+#ifdef QUEUE
+layout(binding = TRACE_KEYS) uniform usamplerBuffer key_texels; // one value each
+#else
 layout(std430, binding = TRACE_KEYS) readonly buffer Keys { uint keys[]; };
+#endif
 layout(push_constant) uniform Push { DiscTraceParams params; };
 
 #define BATCH 32u // points tested before any is solved: one bit each
+
+uint key_at(uint place) {
+#ifdef QUEUE
+    return texelFetch(key_texels, int(place)).x;
+#else
+    return keys[place];
+#endif
+}
 
 void main() {
     uvec2 pixel = tile_pixel();
@@ -41,7 +52,7 @@ void main() {
 
     vec3 o = ray.origin, d = ray.direction;
     uvec2 tile = pixel / uint(DISC_TILE);
-    uvec2 range = tiles[tile.y * screen_tiles(params.tile_size).x + tile.x];
+    uvec2 range = range_of(tile.y * screen_tiles(params.tile_size).x + tile.x);
     uint rank_mask = (1u << params.ranks.bits) - 1u;
     uint work_left = params.work;
     uint next = range.x + ray.cursor;
@@ -57,12 +68,12 @@ void main() {
         uint count = min(range.y - next, BATCH);
         uint candidates = 0u;
         for (uint j = 0u; j < count; ++j) {
-            bool near = near_trust_ball(o, d, center_trust_of(slots[next + j]), ray.hit_t);
+            bool near = near_trust_ball(o, d, center_trust_of(slot_at(next + j)), ray.hit_t);
             candidates |= near ? 1u << j : 0u;
         }
         uint solved = 0u;
         while (candidates != 0u) {
-            uint slot = slots[next + uint(findLSB(candidates))];
+            uint slot = slot_at(next + uint(findLSB(candidates)));
             candidates &= candidates - 1u;
             Polynomial p = polynomial_of(slot);
             float t = intersect(o, d, p, 0.0);
@@ -79,7 +90,7 @@ void main() {
         ray.tests += count;
         work_left -= min(work_left, count + solved + 1u);
         bool more = next < range.y;
-        uint rank = keys[more ? next : range.x] & rank_mask;
+        uint rank = key_at(more ? next : range.x) & rank_mask;
         alive = more && rank <= depth_rank(params.ranks, ray.hit_t);
     }
 

@@ -20,6 +20,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
+#define LISTS
 #include "layout.glsl"
 #include "math.glsl"
 #include "grid.glsl"
@@ -30,8 +31,6 @@
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
-layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
 layout(std430, binding = LIVE_RAYS) readonly buffer LiveRays { uint live_rays[]; };
 layout(push_constant) uniform Push { TraceParams params; };
@@ -50,7 +49,7 @@ void main() {
     bool alive = ray.cell != NONE;
     uint cell = ray.cell;
     uvec3 at = cell_of_id(grid, alive ? cell : 0u); // once: lavapipe divides integers lane by lane
-    uvec2 range = alive ? cells[cell] : uvec2(0u);
+    uvec2 range = alive ? range_of(cell) : uvec2(0u);
     uint next = range.x + ray.cursor;
     uint hit_object = NONE, hit_index = NONE;
     if (alive && ray.hit_slot != NONE) {
@@ -77,12 +76,12 @@ void main() {
         within.x = everything ? -NO_HIT : within.x;
         within.y = ray.after > 0.0 ? NO_HIT : within.y;
         for (uint j = 0u; j < count; ++j) {
-            bool near = enters_trust_ball(o, d, center_trust_of(slots[next + j]), ray.hit_t, within);
+            bool near = enters_trust_ball(o, d, center_trust_of(slot_at(next + j)), ray.hit_t, within);
             candidates |= near ? 1u << j : 0u;
         }
         uint solved = 0u;
         while (candidates != 0u) {
-            uint slot = slots[next + uint(findLSB(candidates))];
+            uint slot = slot_at(next + uint(findLSB(candidates)));
             candidates &= candidates - 1u;
             Polynomial p = polynomial_of(slot);
 #ifdef LEAVES
@@ -121,7 +120,7 @@ void main() {
             at = next_cell(at, exits, d);
             alive = !ends && in_grid(grid, at);
             cell = alive ? cell_id(grid, at) : NONE;
-            range = alive ? cells[cell] : uvec2(0u);
+            range = alive ? range_of(cell) : uvec2(0u);
             next = range.x;
             seeking = alive && range.x == range.y;
             ray.cells += alive ? 1u : 0u;

@@ -24,11 +24,11 @@
 #include "fit.glsl"
 #include "polynomial.glsl"
 #include "state.glsl"
+#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; uint rejected; };
 layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
@@ -36,7 +36,7 @@ layout(std430, binding = REFINE_OFFSETS) readonly buffer Offsets { uint offsets[
 layout(std430, binding = REFINE_OUTCOMES) readonly buffer Outcomes { FitOutcome outcomes[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 
-#ifdef RECORDS_AS_TEXELS // as in records.glsl
+#ifdef QUEUE // as in records.glsl
 layout(binding = REFINE_POINTS) uniform usamplerBuffer points;
 
 ListedPoint listed_point(uint i) {
@@ -91,7 +91,7 @@ bool belongs(uint slot, uvec2 slots) {
 // its ball was clipped, so that its centre lies elsewhere.
 uint nearest_slot(Rows rows, vec3 x, uint stored, bool clipped, uvec2 slots) {
     uint best = stored;
-    vec3 to_stored = polynomials[stored].center_trust.xyz - x;
+    vec3 to_stored = center_trust_of(stored).xyz - x;
     float best_square = clipped ? NO_HIT : dot3(to_stored, to_stored);
     for (uint row = 0u; row < rows.count; ++row) {
         uvec2 range = row_range(rows, row);
@@ -100,7 +100,7 @@ uint nearest_slot(Rows rows, vec3 x, uint stored, bool clipped, uvec2 slots) {
             vec3 y = point.position - x;
             float square = dot3(y, y);
             bool ties = square == best_square;
-            bool nearer = square < best_square || (ties && polynomials[point.slot].index < polynomials[best].index);
+            bool nearer = square < best_square || (ties && index_of(point.slot) < index_of(best));
             bool better = nearer && belongs(point.slot, slots);
             best = better ? point.slot : best;
             best_square = better ? square : best_square;
@@ -186,8 +186,8 @@ void main() {
     Hit hit = hits[at];
     if (bitfieldExtract(hit.status, 0, HIT_STATUS_BITS) != HIT_PENDING) return;
     Ray ray = load_ray(at);
-    vec4 stored = polynomials[ray.hit_slot].center_trust;
-    uint object = polynomials[ray.hit_slot].object;
+    vec4 stored = center_trust_of(ray.hit_slot);
+    uint object = object_of(ray.hit_slot);
     uvec2 slots = uvec2(objects[object].first_slot, objects[object].slot_count);
     vec3 from_stored = hit.position - stored.xyz;
 

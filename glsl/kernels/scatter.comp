@@ -15,7 +15,6 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
-#define STATE_MOVES
 #include "layout.glsl"
 #include "environment.glsl"
 #include "math.glsl"
@@ -23,11 +22,11 @@
 #include "optics.glsl"
 #include "sampler.glsl"
 #include "state.glsl"
+#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
 layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
@@ -69,7 +68,7 @@ void main() {
     if (paths[at].pixel == NONE) return;
     Ray ray = load_ray(at);
     if (ray.hit_slot == NONE) return;
-    uint object = polynomials[ray.hit_slot].object;
+    uint object = object_of(ray.hit_slot);
     uint material = objects[object].material;
     if (material == MATERIAL_DIFFUSE) return;
 

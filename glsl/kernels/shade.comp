@@ -36,7 +36,7 @@ void main() {
     uint ray = lit_rays[at].x, slot = lit_rays[at].y;
     uint pixel = paths[ray].pixel;
     vec3 light = params.light_count > 0u ? gathered(at, pixel) : vec3(0.0);
-    vec3 albedo = albedo_at(polynomials[slot].object, slot, hits[ray].position);
+    vec3 albedo = albedo_at(object_of(slot), slot, hits[ray].position);
     vec3 scattered = paths[ray].throughput * (albedo * (light * INVERSE_PI));
     write_channels(pixel, paths[ray].channels, paths[ray].emitted + scattered);
 }

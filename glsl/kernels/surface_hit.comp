@@ -10,18 +10,17 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
+#define LISTS
 #include "layout.glsl"
 #include "grid.glsl"
 #include "polynomial.glsl"
 #include "blend.glsl"
 #include "state.glsl"
+#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
-layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
-layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
 layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
@@ -33,19 +32,19 @@ layout(push_constant) uniform Push { TraceParams params; };
 // The mean of the normals of the object's polynomials around x, by their weights. First the trust balls
 // that hold x, up to 32 into a bit mask, then their normals: few of a cell do.
 vec3 blended_normal(vec3 x, vec3 normal, uint object) {
-    uvec2 range = cells[cell_id(grid, cell_of(grid, x))];
+    uvec2 range = range_of(cell_id(grid, cell_of(grid, x)));
     uint end = min(range.y, range.x + MOST_BLENDED);
     vec3 sum = 1e-6 * normal; // where nothing has a weight, the hit's own
     for (uint first = range.x; first < end; first += ASKED_AT_ONCE) {
         uint count = min(end - first, ASKED_AT_ONCE);
         uint holding = 0u;
         for (uint i = 0u; i < count; ++i) {
-            vec4 ball = polynomials[slots[first + i]].center_trust;
+            vec4 ball = center_trust_of(slot_at(first + i));
             vec3 y = x - ball.xyz;
             holding |= dot3(y, y) < ball.w * ball.w ? 1u << i : 0u;
         }
         while (holding != 0u) {
-            Polynomial p = polynomials[slots[first + uint(findLSB(holding))]];
+            Polynomial p = polynomial_of(slot_at(first + uint(findLSB(holding))));
             holding &= holding - 1u;
             if (p.object == object) sum += weighted_normal(p, x, normal);
         }
@@ -64,7 +63,7 @@ void main() {
         hits[at].status = iterations | HIT_NONE;
         return;
     }
-    Polynomial p = polynomials[ray.hit_slot];
+    Polynomial p = polynomial_of(ray.hit_slot);
     vec3 y, normal;
     surface_at(ray.origin, ray.direction, ray.hit_t, p, y, normal);
     bool refined = objects[p.object].max_iterations > 0u;

@@ -9,11 +9,10 @@
 #include "blend.glsl"
 #include "grid.glsl"
 #include "image.glsl"
+#define LISTS
+#include "records.glsl"
 
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
-layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
-layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = SHADE_COLORS) readonly buffer Colors { float colors[]; };
 
@@ -34,23 +33,23 @@ vec3 value_of(ObjectInfo object, uint slot) {
 vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
     vec3 sum = 1e-6 * value_of(object, slot);
     float weights = 1e-6;
-    uvec2 range = cells[cell_id(grid, cell_of(grid, x))];
+    uvec2 range = range_of(cell_id(grid, cell_of(grid, x)));
     uint end = object.first_color != NONE ? min(range.y, range.x + MOST_ASKED) : range.x;
     for (uint first = range.x; first < end; first += ASKED_AT_ONCE) {
         uint count = min(end - first, ASKED_AT_ONCE);
         uint holding = 0u;
         for (uint i = 0u; i < count; ++i) {
-            uint near = slots[first + i];
-            vec4 ball = polynomials[near].center_trust;
+            uint near = slot_at(first + i);
+            vec4 ball = center_trust_of(near);
             vec3 y = x - ball.xyz;
             bool holds = near - object.first_slot < object.slot_count && dot3(y, y) < ball.w * ball.w;
             holding |= holds ? 1u << i : 0u;
         }
         while (holding != 0u) {
-            uint near = slots[first + uint(findLSB(holding))];
+            uint near = slot_at(first + uint(findLSB(holding)));
             holding &= holding - 1u;
             vec3 normal;
-            float weight = weight_at(polynomials[near], x, normal);
+            float weight = weight_at(polynomial_of(near), x, normal);
             sum += weight * value_of(object, near);
             weights += weight;
         }

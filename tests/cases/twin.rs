@@ -7,7 +7,6 @@ use harness::{
 };
 use plan::{Diagnostic, RayLoop};
 use points::PointSet;
-use render::Records;
 
 const LIGHTS: &str = "
 [[lights]]
@@ -224,16 +223,6 @@ fn crops_and_tiles_show_the_same_pixels() {
         let at = (500 + i / 77) * 1100 + 1000 + i % 77;
         assert_eq!((color, crop.depth[i]), (&whole.color[at], whole.depth[at]), "pixel {i}");
     }
-}
-
-/// SwiftShader, for one, allows too few texels for most scenes.
-#[test]
-fn storage_and_texel_buffers_give_the_same_bytes() {
-    let plan = plan_of(&format!("{SMALL}\n{LIGHTS}"), &[set_of(fibonacci_sphere(10_000))]);
-    let bench = Bench::open();
-    let [storage, texels] =
-        [Records::Storage, Records::Texels].map(|records| bench.render_with(&plan, records));
-    assert_same_bits("records", &storage, &texels);
 }
 
 /// Two runs, two renderers: the same bytes.

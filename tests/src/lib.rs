@@ -24,7 +24,7 @@ use kernels::layout;
 use plan::{Picture, Plan, SceneImages};
 use points::{PointSet, Unwatched};
 use reference::Reference;
-use render::{Records, Renderer};
+use render::Renderer;
 use scene::{Scene, Up};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -74,14 +74,7 @@ impl Bench {
     /// Builds and traces a plan on the device.
     #[must_use]
     pub fn render(&self, plan: &Plan) -> Rendered {
-        self.render_with(plan, Records::best_for(&self.device, plan.cloud.points.len()))
-    }
-
-    /// The same with a given way to read polynomials.
-    #[must_use]
-    pub fn render_with(&self, plan: &Plan, records: Records) -> Rendered {
-        let mut renderer =
-            Renderer::with_records(&self.device, plan, records, &Unwatched).expect("builds");
+        let mut renderer = Renderer::new(&self.device, plan, &Unwatched).expect("builds");
         let (picture, stats) = renderer.frame(plan, &Unwatched).expect("renders");
         let surfaces = renderer.surfaces();
         let mut polynomials =

@@ -8,7 +8,7 @@ use crate::buffer::Buffer;
 use crate::device::Device;
 use crate::error::GpuError;
 use crate::image::Image;
-use crate::kernel::{Binding, KernelInner};
+use crate::kernel::{Binding, KernelInner, Texel};
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -137,7 +137,7 @@ impl Descriptors {
         let sizes = [
             of_kind(Binding::StorageBuffer),
             of_kind(Binding::StorageImage),
-            of_kind(Binding::UniformTexelBuffer),
+            of_kind(Binding::UniformTexelBuffer(Texel::Four)),
         ];
         let info = vk::DescriptorPoolCreateInfo::default().max_sets(POOL_SETS).pool_sizes(&sizes);
         // SAFETY: the counts are above zero.
@@ -160,8 +160,8 @@ impl Descriptors {
                 .descriptor_type(slot.kind.descriptor_type());
             let (buffer, view, image);
             let write = match (slot.kind, bound) {
-                (Binding::UniformTexelBuffer, Bound::Buffer(bound)) => {
-                    view = [bound.inner.texel_view(slot.texel)?];
+                (Binding::UniformTexelBuffer(texel), Bound::Buffer(bound)) => {
+                    view = [bound.inner.texel_view(slot.texel, texel)?];
                     write.texel_buffer_view(&view)
                 }
                 (_, Bound::Buffer(bound)) => {

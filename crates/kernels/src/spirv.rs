@@ -48,10 +48,6 @@ modules! {
     disc_trace,
     /// `disc_trace` for rays in a queue.
     disc_trace_queue,
-    /// The same, reading polynomials through a uniform texel buffer.
-    disc_trace_texels,
-    /// `disc_trace_texels` for rays in a queue.
-    disc_trace_texels_queue,
     /// The local polynomial of each point.
     fit_polynomials,
     /// Cells around each trust ball.
@@ -66,16 +62,8 @@ modules! {
     grid_trace_leaving,
     /// `grid_trace_leaving` for rays in a queue.
     grid_trace_leaving_queue,
-    /// For those, reading polynomials through a uniform texel buffer.
-    grid_trace_leaving_texels,
-    /// `grid_trace_leaving_texels` for rays in a queue.
-    grid_trace_leaving_texels_queue,
     /// `grid_trace` for rays in a queue.
     grid_trace_queue,
-    /// From the camera, reading polynomials through a uniform texel buffer.
-    grid_trace_texels,
-    /// `grid_trace_texels` for rays in a queue.
-    grid_trace_texels_queue,
     /// Where rays first meet an isosurface.
     isosurface,
     /// `isosurface` for rays in a queue.
@@ -120,10 +108,6 @@ modules! {
     refine,
     /// `refine` for rays in a queue.
     refine_queue,
-    /// The same, reading points through a uniform texel buffer.
-    refine_texels,
-    /// `refine_texels` for rays in a queue.
-    refine_texels_queue,
     /// Sends rays whose hit was refined away on to the next.
     resume,
     /// `resume` for rays in a queue.
@@ -156,42 +140,30 @@ modules! {
 
 /// Modules made of another kernel's source with macros defined: name, kernel, macros.
 pub const VARIANTS: &[(&str, &str, &[&str])] = &[
-    ("camera_rays_queue", "camera_rays", &["STATE_QUEUE"]),
-    ("classify_queue", "classify", &["STATE_QUEUE"]),
-    ("disc_trace_queue", "disc_trace", &["STATE_QUEUE"]),
-    ("disc_trace_texels", "disc_trace", &["RECORDS_AS_TEXELS"]),
-    ("disc_trace_texels_queue", "disc_trace", &["RECORDS_AS_TEXELS", "STATE_QUEUE"]),
+    ("camera_rays_queue", "camera_rays", &["QUEUE"]),
+    ("classify_queue", "classify", &["QUEUE"]),
+    ("disc_trace_queue", "disc_trace", &["QUEUE"]),
     ("grid_trace_leaving", "grid_trace", &["LEAVES"]),
-    ("grid_trace_leaving_queue", "grid_trace", &["LEAVES", "STATE_QUEUE"]),
-    ("grid_trace_leaving_texels", "grid_trace", &["LEAVES", "RECORDS_AS_TEXELS"]),
-    (
-        "grid_trace_leaving_texels_queue",
-        "grid_trace",
-        &["LEAVES", "RECORDS_AS_TEXELS", "STATE_QUEUE"],
-    ),
-    ("grid_trace_queue", "grid_trace", &["STATE_QUEUE"]),
-    ("grid_trace_texels", "grid_trace", &["RECORDS_AS_TEXELS"]),
-    ("grid_trace_texels_queue", "grid_trace", &["RECORDS_AS_TEXELS", "STATE_QUEUE"]),
-    ("isosurface_queue", "isosurface", &["STATE_QUEUE"]),
+    ("grid_trace_leaving_queue", "grid_trace", &["LEAVES", "QUEUE"]),
+    ("grid_trace_queue", "grid_trace", &["QUEUE"]),
+    ("isosurface_queue", "isosurface", &["QUEUE"]),
     ("isosurface_shadows", "isosurface", &["SHADOWS"]),
-    ("isosurface_shadows_queue", "isosurface", &["SHADOWS", "STATE_QUEUE"]),
-    ("list_lit_queue", "list_lit", &["STATE_QUEUE"]),
+    ("isosurface_shadows_queue", "isosurface", &["SHADOWS", "QUEUE"]),
+    ("list_lit_queue", "list_lit", &["QUEUE"]),
     ("march_lit", "march", &["LIT"]),
-    ("march_lit_queue", "march", &["LIT", "STATE_QUEUE"]),
-    ("march_queue", "march", &["STATE_QUEUE"]),
+    ("march_lit_queue", "march", &["LIT", "QUEUE"]),
+    ("march_queue", "march", &["QUEUE"]),
     ("march_shadows", "march", &["SHADOWS"]),
-    ("march_shadows_queue", "march", &["SHADOWS", "STATE_QUEUE"]),
-    ("mark_live_queue", "mark_live", &["STATE_QUEUE"]),
-    ("point_lights_queue", "point_lights", &["STATE_QUEUE"]),
-    ("point_rays_queue", "point_rays", &["STATE_QUEUE"]),
-    ("refine_queue", "refine", &["STATE_QUEUE"]),
-    ("refine_texels", "refine", &["RECORDS_AS_TEXELS"]),
-    ("refine_texels_queue", "refine", &["RECORDS_AS_TEXELS", "STATE_QUEUE"]),
-    ("resume_queue", "resume", &["STATE_QUEUE"]),
-    ("scatter_queue", "scatter", &["STATE_QUEUE"]),
-    ("shade_queue", "shade", &["STATE_QUEUE"]),
-    ("shadow_rays_queue", "shadow_rays", &["STATE_QUEUE"]),
-    ("surface_hit_queue", "surface_hit", &["STATE_QUEUE"]),
+    ("march_shadows_queue", "march", &["SHADOWS", "QUEUE"]),
+    ("mark_live_queue", "mark_live", &["QUEUE"]),
+    ("point_lights_queue", "point_lights", &["QUEUE"]),
+    ("point_rays_queue", "point_rays", &["QUEUE"]),
+    ("refine_queue", "refine", &["QUEUE"]),
+    ("resume_queue", "resume", &["QUEUE"]),
+    ("scatter_queue", "scatter", &["QUEUE"]),
+    ("shade_queue", "shade", &["QUEUE"]),
+    ("shadow_rays_queue", "shadow_rays", &["QUEUE"]),
+    ("surface_hit_queue", "surface_hit", &["QUEUE"]),
 ];
 
 /// The kernel whose source a module is made of, and the macros it is compiled with.

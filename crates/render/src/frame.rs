@@ -11,15 +11,15 @@ use crate::RenderError;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
     AlbedoIo, CameraRays, CameraRaysIo, Classify, ClassifyIo, DiscTrace, DiscTraceIo, GridTrace,
-    GridTraceIo, Isosurface, ListLive, March, PointLight, Records, Refine, RefineIo, Scatter,
-    ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start, SurfaceHit, SurfaceHitIo,
+    GridTraceIo, Isosurface, ListLive, March, PointLight, Refine, RefineIo, Scatter, ScatterIo,
+    Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start, SurfaceHit, SurfaceHitIo,
 };
 use crate::samples::Samples;
 use crate::state::{RayLoop, RayState};
 use crate::volumes::VolumeBuffers;
 use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder, Timings};
-use kernels::layout::{FilmPixel, Hit, NONE, TraceParams, WaveParams};
+use kernels::layout::{FilmPixel, Hit, NONE, Polynomial, StateRay, TraceParams, WaveParams};
 use plan::{Picture, Plan, Rays, Window, camera_wave};
 use points::Watch;
 use points::device::Scan;
@@ -30,6 +30,10 @@ use std::time::{Duration, Instant};
 /// Loop iterations that a ray may spend in one pass. lavapipe silently stops all loops of a shader
 /// group at 65 535 iterations; eight rays share that count there, and each may go 64 over its share.
 const WORK_PER_PASS: u32 = 7_000;
+
+/// Of 16 bytes.
+const TEXELS_A_POLYNOMIAL: u64 = (size_of::<Polynomial>() / 16) as u64;
+const TEXELS_A_RAY: u64 = (size_of::<StateRay>() / 16) as u64;
 
 /// Rays are listed where no more than one of so many of the last pass lives.
 const LISTED_SHARE: u32 = 2;
@@ -139,18 +143,13 @@ struct Passes {
 }
 
 impl Passes {
-    fn new(
-        device: &Arc<Device>,
-        records: Records,
-        rays: u32,
-        form: RayLoop,
-    ) -> Result<Self, RenderError> {
+    fn new(device: &Arc<Device>, rays: u32, form: RayLoop) -> Result<Self, RenderError> {
         Ok(Self {
             camera_rays: CameraRays::new(device, form)?,
-            disc_trace: DiscTrace::new(device, records, form)?,
-            grid_trace: GridTrace::new(device, records, form)?,
+            disc_trace: DiscTrace::new(device, form)?,
+            grid_trace: GridTrace::new(device, form)?,
             surface_hit: SurfaceHit::new(device, form)?,
-            refine: Refine::new(device, records, form)?,
+            refine: Refine::new(device, form)?,
             classify: Classify::new(device, form)?,
             shadow_rays: ShadowRays::new(device, form)?,
             shade: Shade::new(device, form)?,
@@ -191,19 +190,6 @@ impl Renderer {
     /// # Errors
     /// A device without the memory, a buffer over its limits, a lost device, an interruption.
     pub fn new(device: &Arc<Device>, plan: &Plan, watch: &dyn Watch) -> Result<Self, RenderError> {
-        Self::with_records(device, plan, Records::best_for(device, plan.cloud.points.len()), watch)
-    }
-
-    /// As [`Renderer::new`], with a given way to read polynomials.
-    ///
-    /// # Errors
-    /// As [`Renderer::new`].
-    pub fn with_records(
-        device: &Arc<Device>,
-        plan: &Plan,
-        records: Records,
-        watch: &dyn Watch,
-    ) -> Result<Self, RenderError> {
         let surfaces = Surfaces::build(
             device,
             &plan.cloud,
@@ -213,10 +199,13 @@ impl Renderer {
             &plan.volumes.stand_ins(),
             watch,
         )?;
-        let form = RayLoop::of(plan.ray_loop);
         let tiles = plan.tiles();
         let pixels = tiles.iter().map(Window::pixels).max().unwrap_or(1) as u64;
         let rays = tiles.iter().map(camera_wave).max().unwrap_or(1) * plan.rays_per_pixel();
+        let records = plan.cloud.points.len() as u64 * TEXELS_A_POLYNOMIAL;
+        let lists = (surfaces.cells.bytes() / 8).max(surfaces.slots.bytes() / 4);
+        let longest = records.max(lists).max(u64::from(rays) * TEXELS_A_RAY);
+        let form = RayLoop::of(plan.ray_loop, device, longest);
         let shadows = if plan.lights.is_empty() { 1 } else { rays };
         Ok(Self {
             surfaces,
@@ -236,7 +225,7 @@ impl Renderer {
             state: RayState::new(device, rays, form, plan.scatters())?,
             shadows: RayState::new(device, shadows, form, false)?,
             discs: Discs::new(device, plan.cloud.points.len() as u32)?,
-            passes: Passes::new(device, records, rays, form)?,
+            passes: Passes::new(device, rays, form)?,
             recorder: Recorder::new(device)?,
             device: Arc::clone(device),
         })

@@ -16,7 +16,6 @@ mod wave;
 
 pub use discs::DiscLists;
 pub use frame::{FrameStats, Renderer, Traversal};
-pub use passes::Records;
 pub use points::device::BuildError;
 
 /// Why a frame could not be finished.

@@ -1,5 +1,7 @@
 //! What `albedo.glsl` and `environment.glsl` read, for every pass whose kernel includes them.
 
+use super::surface_lists;
+use crate::state::RayLoop;
 use gpu::{Binding, Buffer, PassBuilder};
 use kernels::layout::{
     SHADE_COLORS, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, TRACE_CELLS, TRACE_INFO,
@@ -19,16 +21,11 @@ pub(crate) struct AlbedoIo<'a> {
 
 impl AlbedoIo<'_> {
     /// Of the kernel.
-    pub const BINDINGS: [(u32, Binding); 8] = [
-        (TRACE_INFO, Binding::StorageBuffer),
-        (TRACE_CELLS, Binding::StorageBuffer),
-        (TRACE_SLOTS, Binding::StorageBuffer),
-        (TRACE_POLYNOMIALS, Binding::StorageBuffer),
-        (SHADE_OBJECTS, Binding::StorageBuffer),
-        (SHADE_COLORS, Binding::StorageBuffer),
-        (SHADE_IMAGES, Binding::StorageBuffer),
-        (SHADE_TEXELS, Binding::StorageBuffer),
-    ];
+    pub fn bindings(form: RayLoop) -> impl Iterator<Item = (u32, Binding)> {
+        let buffers = [TRACE_INFO, SHADE_OBJECTS, SHADE_COLORS, SHADE_IMAGES, SHADE_TEXELS];
+        let buffers = buffers.map(|binding| (binding, Binding::StorageBuffer));
+        buffers.into_iter().chain(surface_lists(form))
+    }
 
     /// Binds all of it.
     pub fn bind<'p>(self, pass: PassBuilder<'p>) -> PassBuilder<'p> {

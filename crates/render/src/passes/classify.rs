@@ -2,7 +2,7 @@
 
 use super::line;
 use crate::state::{RayLoop, StoredRays, Touch};
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
     SHADE_FILM, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, TRACE_HITS, TRACE_POLYNOMIALS, WAVE_LIT,
     WAVE_LIT_RAYS, WAVE_NEXT, WAVE_PATHS, WaveParams,
@@ -41,13 +41,13 @@ impl Classify {
 
     pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
         let params = size_of::<WaveParams>();
-        let kernel = |name, module: &[u32], buffers: &[u32]| {
+        let kernel = |name, module: &[u32], buffers: &[u32], polynomials: &[(u32, Binding)]| {
             let mut bindings = form.bindings(Touch::Reads);
+            bindings.extend(polynomials);
             bindings.extend(buffers.iter().map(|&binding| (binding, Binding::StorageBuffer)));
             Kernel::new(device, name, module, &bindings, params)
         };
         let buffers = [
-            TRACE_POLYNOMIALS,
             TRACE_HITS,
             SHADE_OBJECTS,
             SHADE_FILM,
@@ -62,11 +62,13 @@ impl Classify {
                 Self::NAME,
                 &form.module(spirv::classify, spirv::classify_queue),
                 &buffers,
+                &[(TRACE_POLYNOMIALS, form.read(Texel::Four))],
             )?,
             list_lit: kernel(
                 Self::LIST_LIT,
                 &form.module(spirv::list_lit, spirv::list_lit_queue),
                 &[WAVE_LIT, WAVE_LIT_RAYS],
+                &[],
             )?,
         })
     }

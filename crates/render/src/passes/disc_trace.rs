@@ -1,9 +1,9 @@
 //! The pass `disc_trace`.
 
-use super::{Records, over_pixels};
+use super::{over_pixels, surface_lists};
 use crate::discs::DiscLists;
 use crate::state::{RayLoop, RayState, Touch};
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
     DiscTraceParams, TRACE_CELLS, TRACE_KEYS, TRACE_LIVE, TRACE_POLYNOMIALS, TRACE_SLOTS,
     TraceParams,
@@ -29,20 +29,12 @@ pub(crate) struct DiscTrace {
 impl DiscTrace {
     pub const NAME: &'static str = "disc_trace";
 
-    pub fn new(device: &Arc<Device>, records: Records, form: RayLoop) -> Result<Self, GpuError> {
-        let (module, polynomials) = match records {
-            Records::Texels => (
-                form.module(spirv::disc_trace_texels, spirv::disc_trace_texels_queue),
-                Binding::UniformTexelBuffer,
-            ),
-            Records::Storage => {
-                (form.module(spirv::disc_trace, spirv::disc_trace_queue), Binding::StorageBuffer)
-            }
-        };
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+        let module = form.module(spirv::disc_trace, spirv::disc_trace_queue);
         let mut bindings = form.bindings(Touch::Updates);
-        let buffers = [TRACE_CELLS, TRACE_SLOTS, TRACE_LIVE, TRACE_KEYS];
-        bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
-        bindings.push((TRACE_POLYNOMIALS, polynomials));
+        bindings.push((TRACE_LIVE, Binding::StorageBuffer));
+        bindings.push((TRACE_KEYS, form.read(Texel::One)));
+        bindings.extend(surface_lists(form));
         let params = size_of::<DiscTraceParams>();
         let kernel = Kernel::new(device, Self::NAME, &module, &bindings, params)?;
         Ok(Self { kernel })

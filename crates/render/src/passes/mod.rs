@@ -27,7 +27,6 @@ pub(crate) use disc_count::DiscCount;
 pub(crate) use disc_emit::DiscEmit;
 pub(crate) use disc_ranges::DiscRanges;
 pub(crate) use disc_trace::{DiscTrace, DiscTraceIo};
-pub use grid_trace::Records;
 pub(crate) use grid_trace::{GridTrace, GridTraceIo, Start};
 pub(crate) use isosurface::{Isosurface, IsosurfaceIo, Searching};
 pub(crate) use live::ListLive;
@@ -39,11 +38,22 @@ pub(crate) use shade::{Shade, ShadeIo};
 pub(crate) use shadow_rays::{ShadowRays, ShadowRaysIo};
 pub(crate) use surface_hit::{SurfaceHit, SurfaceHitIo};
 
-use kernels::layout::TILE_GROUP;
+use crate::state::RayLoop;
+use gpu::{Binding, Texel};
+use kernels::layout::{TILE_GROUP, TRACE_CELLS, TRACE_POLYNOMIALS, TRACE_SLOTS};
 use points::device::line;
 
 /// Pixels that a workgroup covers along each side (`tile_pixel` in `glsl/shared/index.glsl`).
 const TILE_EDGE: u32 = 8;
+
+/// The polynomials, and the lists of points of cells or of screen tiles (`glsl/shared/records.glsl`).
+fn surface_lists(form: RayLoop) -> [(u32, Binding); 3] {
+    [
+        (TRACE_POLYNOMIALS, form.read(Texel::Four)),
+        (TRACE_CELLS, form.read(Texel::Two)),
+        (TRACE_SLOTS, form.read(Texel::One)),
+    ]
+}
 
 /// Invocations for a tile of pixels: a row of [`TILE_GROUP`] for each 8 × 8 of them.
 fn over_pixels(size: [u32; 2]) -> [u32; 3] {

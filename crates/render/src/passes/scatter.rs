@@ -2,7 +2,7 @@
 
 use super::line;
 use crate::state::{RayLoop, RayState, Touch};
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
     SHADE_FILM, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, TRACE_HITS, TRACE_INFO,
     TRACE_POLYNOMIALS, WAVE_NEXT, WAVE_NEXT_PATHS, WAVE_PATHS, WAVE_TALLY, WaveParams,
@@ -38,10 +38,9 @@ impl Scatter {
     pub const NAME: &'static str = "scatter";
 
     pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
-        let mut bindings = form.bindings(Touch::Moves);
+        let mut bindings = form.bindings(Touch::Updates);
         let buffers = [
             TRACE_INFO,
-            TRACE_POLYNOMIALS,
             TRACE_HITS,
             SHADE_OBJECTS,
             SHADE_FILM,
@@ -53,6 +52,7 @@ impl Scatter {
             WAVE_TALLY,
         ];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        bindings.push((TRACE_POLYNOMIALS, form.read(Texel::Four)));
         let params = size_of::<WaveParams>();
         let kernel = Kernel::new(
             device,

@@ -32,7 +32,7 @@ impl Shade {
 
     pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
         let mut bindings = form.bindings(Touch::Reads);
-        bindings.extend(AlbedoIo::BINDINGS);
+        bindings.extend(AlbedoIo::bindings(form));
         let buffers = [TRACE_HITS, SHADE_FILM, WAVE_PATHS, WAVE_LIT_RAYS, WAVE_LIGHT_SUMS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         let params = size_of::<WaveParams>();

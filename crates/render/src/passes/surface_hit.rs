@@ -1,6 +1,6 @@
 //! The pass `surface_hit`.
 
-use super::line;
+use super::{line, surface_lists};
 use crate::state::{RayLoop, StoredRays, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
@@ -32,16 +32,9 @@ impl SurfaceHit {
 
     pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
         let mut bindings = form.bindings(Touch::Reads);
-        let buffers = [
-            TRACE_INFO,
-            TRACE_CELLS,
-            TRACE_SLOTS,
-            TRACE_POLYNOMIALS,
-            TRACE_LIVE,
-            SHADE_OBJECTS,
-            TRACE_HITS,
-        ];
+        let buffers = [TRACE_INFO, TRACE_LIVE, SHADE_OBJECTS, TRACE_HITS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        bindings.extend(surface_lists(form));
         let params = size_of::<TraceParams>();
         let kernel = Kernel::new(
             device,
