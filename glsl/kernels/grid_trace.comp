@@ -69,19 +69,25 @@ void main() {
 #endif
 
     while (alive && cells_left > 0u && work_left > 0u) {
-        uint count = min(range.y - next, BATCH);
+        uint first = next & ~3u; // slots are read four at a time
+        uint end = min(range.y, first + BATCH);
         uint candidates = 0u;
         bool everything = ray.cells == 0u || ray.after > 0.0;
         vec2 within = way_through(grid, at, o, d);
         within.x = everything ? -NO_HIT : within.x;
         within.y = ray.after > 0.0 ? NO_HIT : within.y;
-        for (uint j = 0u; j < count; ++j) {
-            bool near = enters_trust_ball(o, d, center_trust_of(slot_at(next + j)), ray.hit_t, within);
-            candidates |= near ? 1u << j : 0u;
+        for (uint at_four = first; at_four < end; at_four += 4u) {
+            uvec4 four = four_slots_at(at_four);
+            uint near = enters_trust_ball(o, d, center_trust_of(four.x), ray.hit_t, within) ? 1u : 0u;
+            near |= enters_trust_ball(o, d, center_trust_of(four.y), ray.hit_t, within) ? 2u : 0u;
+            near |= enters_trust_ball(o, d, center_trust_of(four.z), ray.hit_t, within) ? 4u : 0u;
+            near |= enters_trust_ball(o, d, center_trust_of(four.w), ray.hit_t, within) ? 8u : 0u;
+            candidates |= near << (at_four - first);
         }
+        candidates &= first < end ? (~0u << (next - first)) & (~0u >> (first + BATCH - end)) : 0u;
         uint solved = 0u;
         while (candidates != 0u) {
-            uint slot = slot_at(next + uint(findLSB(candidates)));
+            uint slot = slot_at(first + uint(findLSB(candidates)));
             candidates &= candidates - 1u;
             Polynomial p = polynomial_of(slot);
 #ifdef LEAVES
@@ -103,7 +109,8 @@ void main() {
             hit_index = better ? p.index : hit_index;
             ++solved;
         }
-        next += count;
+        uint count = end - next;
+        next = end;
         ray.tests += count;
         work_left -= min(work_left, count + solved + 1u);
 

@@ -50,14 +50,18 @@ Polynomial polynomial_of(uint slot) {
 #ifdef LISTS
 #ifdef QUEUE
 layout(binding = TRACE_CELLS) uniform usamplerBuffer range_texels; // two values a cell
-layout(binding = TRACE_SLOTS) uniform usamplerBuffer slot_texels; // one
+layout(binding = TRACE_SLOTS) uniform usamplerBuffer slot_texels; // four
 
 uvec2 range_of(uint cell) {
     return texelFetch(range_texels, int(cell)).xy;
 }
 
 uint slot_at(uint place) {
-    return texelFetch(slot_texels, int(place)).x;
+    return texelFetch(slot_texels, int(place / 4u))[place & 3u];
+}
+
+uvec4 four_slots_at(uint place) {
+    return texelFetch(slot_texels, int(place / 4u));
 }
 #else
 layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
@@ -70,6 +74,11 @@ uvec2 range_of(uint cell) {
 
 uint slot_at(uint place) {
     return slots[place];
+}
+
+// Those from a multiple of four on; the list has room for four.
+uvec4 four_slots_at(uint place) {
+    return uvec4(slots[place], slots[place + 1u], slots[place + 2u], slots[place + 3u]);
 }
 #endif
 #endif

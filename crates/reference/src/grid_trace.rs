@@ -31,7 +31,11 @@ pub fn grid_trace<R: Real>(
         within[0] = if later || ray.cells == 0 { R::of(-NO_HIT) } else { within[0] };
         within[1] = if later { R::of(NO_HIT) } else { within[1] };
         let [first, end] = lists.cells[grid.cell_id(at) as usize].map(|at| at as usize);
-        for batch in lists.slots[first..end].chunks(BATCH) {
+        let mut start = first;
+        while start < end {
+            let stop = end.min(start / 4 * 4 + BATCH); // slots are read four at a time
+            let batch = &lists.slots[start..stop];
+            start = stop;
             test_batch(ray, batch, polynomials, Some(within), sheet);
             if any_hit && ray.hit_slot != NONE {
                 ray.cell = NONE;

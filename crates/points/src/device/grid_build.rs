@@ -74,7 +74,7 @@ impl GridBuild {
         rec.fill(&cells, 0, bytes, 0);
         let Some((pairs, params)) = self.sorted_pairs(&mut rec, io, BALL_MARGIN)? else {
             rec.submit()?;
-            return Ok(GridLists { cells, slots: Buffer::new(&self.device, "cell slots", 4)? });
+            return Ok(GridLists { cells, slots: Buffer::new(&self.device, "cell slots", 16)? });
         };
         rec.pass("grid_ranges", &self.ranges)
             .buffer(GRID_INFO, io.grid_info)

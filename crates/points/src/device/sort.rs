@@ -27,7 +27,7 @@ impl Pairs {
     pub fn new(device: &Arc<Device>, count: u32) -> Result<Self, GpuError> {
         Ok(Self {
             keys: Buffer::new(device, "pair keys", u64::from(count) * 4)?,
-            slots: Buffer::new(device, "pair slots", u64::from(count) * 4)?,
+            slots: Buffer::new(device, "pair slots", u64::from(count).next_multiple_of(4) * 4)?,
         })
     }
 }
@@ -92,6 +92,14 @@ impl Sort {
         let runs = count.div_ceil(RUN_LENGTH);
         let entries = runs << DIGIT_BITS;
         let SortSpace { spare, histogram, levels } = space;
+        // Slots are read four at a time, also behind the last.
+        let end = u64::from(count) * 4;
+        for slots in [&pairs.slots, &spare.slots] {
+            let rest = end.next_multiple_of(16).min(slots.bytes()) - end;
+            if rest > 0 {
+                rec.fill(slots, end, rest, 0);
+            }
+        }
         for shift in (0..u32::BITS - largest.leading_zeros()).step_by(DIGIT_BITS as usize) {
             let params = SortParams { count, shift, runs };
             rec.fill(histogram, 0, u64::from(entries) * 4, 0);

@@ -51,7 +51,7 @@ fn surface_lists(form: RayLoop) -> [(u32, Binding); 3] {
     [
         (TRACE_POLYNOMIALS, form.read(Texel::Four)),
         (TRACE_CELLS, form.read(Texel::Two)),
-        (TRACE_SLOTS, form.read(Texel::One)),
+        (TRACE_SLOTS, form.read(Texel::Four)),
     ]
 }
 
