@@ -109,10 +109,9 @@ void main() {
             hit_index = better ? p.index : hit_index;
             ++solved;
         }
-        uint count = end - next;
+        ray.tests += end - next;
         next = end;
-        ray.tests += count;
-        work_left -= min(work_left, count + solved + 1u);
+        work_left -= min(work_left, (end - first) / 4u + solved + 2u);
 
 #ifdef LEAVES
         bool stops = params.any_hit != 0u && ray.hit_slot != NONE;

@@ -199,13 +199,28 @@ fn a_cell_with_too_many_points_for_one_pass_is_finished_in_the_next() {
     let mut plan = plan_of(
         "[image]\nsize = [24, 16]\n[render]\ngrid_resolution = 1\n[[objects]]\npoints = \"s.ply\"\n\
          surface = { normals = \"polynomial\" }",
-        &[set_of(fibonacci_sphere(150_000))],
+        &[set_of(fibonacci_sphere(300_000))],
     );
     let one_cell = Bench::open().render(&plan);
     assert!(one_cell.passes > 10, "passes: {}", one_cell.passes);
-    assert!(one_cell.tests >= 150_000 * 24, "tests: {}", one_cell.tests);
+    // Four at a time, 65 535 iterations would test 262 140.
+    assert!(one_cell.tests >= 300_000 * 24, "tests: {}", one_cell.tests);
     plan.grid_resolution = 0;
     assert_same_film("one cell", &one_cell.film, &render_twin(&plan).film);
+}
+
+/// However little a ray may do in a pass, it goes on in the next where it stopped.
+#[test]
+fn any_budget_gives_the_same_bytes() {
+    let bench = Bench::open();
+    let glass = "[[objects]]\npoints = \"s.ply\"\nmaterial = { kind = \"glass\" }";
+    for text in [format!("{SMALL}\n{LIGHTS}"), format!("{SMALL}\n{glass}")] {
+        let plan = plan_of(&text, &[set_of(fibonacci_sphere(10_000))]);
+        let whole = bench.render(&plan);
+        let cut = bench.render_within(&plan, Some(64));
+        assert!(cut.passes > whole.passes, "passes: {} and {}", whole.passes, cut.passes);
+        assert_same_bits("budget", &whole, &cut);
+    }
 }
 
 /// A crop, whose pixels are other invocations of other workgroups, shows what the whole shows there;

@@ -74,7 +74,16 @@ impl Bench {
     /// Builds and traces a plan on the device.
     #[must_use]
     pub fn render(&self, plan: &Plan) -> Rendered {
+        self.render_within(plan, None)
+    }
+
+    /// The same; in each pass, a ray may spend no more than so many loop iterations if a number is given.
+    #[must_use]
+    pub fn render_within(&self, plan: &Plan, work: Option<u32>) -> Rendered {
         let mut renderer = Renderer::new(&self.device, plan, &Unwatched).expect("builds");
+        if let Some(work) = work {
+            renderer.set_budget(work);
+        }
         let (picture, stats) = renderer.frame(plan, &Unwatched).expect("renders");
         let surfaces = renderer.surfaces();
         let mut polynomials =

@@ -8,6 +8,7 @@
 mod in_volumes;
 
 use crate::RenderError;
+use crate::budget::Budget;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
     AlbedoIo, CameraRays, CameraRaysIo, Classify, ClassifyIo, DiscTrace, DiscTraceIo, GridTrace,
@@ -26,10 +27,6 @@ use points::device::Scan;
 use points::device::Surfaces;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-
-/// Loop iterations that a ray may spend in one pass. lavapipe silently stops all loops of a shader
-/// group at 65 535 iterations; eight rays share that count there, and each may go 64 over its share.
-const WORK_PER_PASS: u32 = 7_000;
 
 /// Of 16 bytes.
 const TEXELS_A_POLYNOMIAL: u64 = (size_of::<Polynomial>() / 16) as u64;
@@ -121,6 +118,7 @@ pub struct Renderer {
     discs: Discs,
     passes: Passes,
     recorder: Recorder,
+    budget: Budget,
     device: Arc<Device>,
 }
 
@@ -227,8 +225,15 @@ impl Renderer {
             discs: Discs::new(device, plan.cloud.points.len() as u32)?,
             passes: Passes::new(device, rays, form)?,
             recorder: Recorder::new(device)?,
+            budget: Budget::of(device.info()),
             device: Arc::clone(device),
         })
+    }
+
+    /// Lets a ray spend `work` loop iterations in one pass from now on, at least 64 and at most 7000, instead of as many as
+    /// suit the device. No picture depends on it.
+    pub fn set_budget(&mut self, work: u32) {
+        self.budget = Budget::fixed(work);
     }
 
     /// The surfaces that are traced.
@@ -358,8 +363,8 @@ impl Renderer {
             Traced::PastObject(object) => object,
             _ => NONE,
         };
-        let wave =
-            TraceParams { ray_count, cells, work: WORK_PER_PASS, any_hit, listed: 0, passed };
+        let work = self.budget.work();
+        let wave = TraceParams { ray_count, cells, work, any_hit, listed: 0, passed };
         let state = if traced.to_light() { &mut self.shadows } else { &mut self.state };
         let (surfaces, live, live_rays) = (&self.surfaces, &self.live, &self.passes.list_live.rays);
         let mut params = wave;
@@ -368,6 +373,7 @@ impl Renderer {
                 return Err(RenderError::Interrupted);
             }
             self.recorder.fill(live, 0, 4, 0);
+            params.work = self.budget.work();
             match (traced, self.discs.lists()) {
                 (Traced::ByDiscs(tile_size), Some(lists)) => {
                     let io = DiscTraceIo { lists, surfaces, state, live };
@@ -376,7 +382,8 @@ impl Renderer {
                 _ => {
                     if alive <= params.ray_count / LISTED_SHARE {
                         self.passes.list_live.record(&mut self.recorder, &state.current, &wave);
-                        params = TraceParams { ray_count: alive, listed: 1, ..wave };
+                        let work = params.work;
+                        params = TraceParams { ray_count: alive, listed: 1, work, ..wave };
                     }
                     let from = match traced {
                         Traced::ByDiscs(_) | Traced::Camera => Start::Camera,
@@ -398,6 +405,7 @@ impl Renderer {
             let mut left = [0];
             live.read(0, &mut left)?;
             [alive] = left;
+            self.budget.passed(timings.passes.iter().map(|pass| pass.1).sum(), alive > 0);
             watch.done(stats.rays);
         }
         Ok(())

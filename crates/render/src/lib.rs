@@ -6,6 +6,7 @@
 //! same bytes, which the test `every_k_gives_the_same_bytes` checks.
 #![forbid(unsafe_code)]
 
+mod budget;
 mod discs;
 mod frame;
 mod passes;
