@@ -31,11 +31,30 @@
 #define FIT_SIZES 4
 #define FIT_RIMS 5
 
+// leaf_boxes, node_boxes, bound_reach, gather_leaves, find_neighbors
+#define SEARCH_POINTS 0
+#define SEARCH_NODES 1
+#define SEARCH_BOUNDS 2
+#define SEARCH_LEAVES 3
+#define SEARCH_COUNTS 4
+#define SEARCH_LISTS 5
+#define SEARCH_GROUPS 6
+#define LEAF_POINTS 8 // consecutive slots that share a box, and so a list of leaves; children of a node
+#define LEAF_LEVELS 10 // of boxes, at most
+#define LEAF_BITS 24 // of an entry in a list of leaves: the leaf; the others: which of LEAF_POINTS it is for
+#define LEAF_STEPS 32768 // boxes that the search for one list of leaves may look at
+
+// smooth_sizes
+#define SMOOTH_POINTS 0
+#define SMOOTH_LISTS 1
+#define SMOOTH_REACHES 2
+#define SMOOTH_SIZES 3
+
 // clip_balls
 #define CLIP_CLIPS 0
 #define CLIP_POLYNOMIALS 1
 
-// grid_count, grid_emit, grid_ranges
+// grid_count, grid_emit, grid_emit_large, grid_ranges
 #define GRID_INFO 0
 #define GRID_POLYNOMIALS 1
 #define GRID_ORDER 2
@@ -43,6 +62,7 @@
 #define GRID_KEYS 4
 #define GRID_SLOTS 5
 #define GRID_CELLS 6
+#define GRID_LARGE 7
 
 // scan_reduce, scan_apply
 #define SCAN_VALUES 0
@@ -210,6 +230,47 @@ struct Rim {             // 20 bytes
     float openness;      // 16  reach of the Voronoi cell over that of the neighbours
 };
 
+// The box around LEAF_POINTS points, or around as many boxes. Empty: low above high.
+struct SearchNode {      // 32 bytes
+    vec3 low;            //  0
+    uint child;          // 12  the first of the boxes inside; NONE: points are
+    vec3 high;           // 16
+    uint next;           // 28  the box to look at once this one and all inside are done; NONE: none
+};
+
+// One level of the boxes of an object.
+struct LevelParams {     // 64 bytes
+    uint first_slot;     //  0  of the object
+    uint point_count;    //  4  of the object
+    uint neighbors;      //  8  k
+    uint level;          // 12  0: the boxes of points
+    uint top;            // 16  the highest level: it has LEAF_POINTS boxes
+    uint count;          // 20  boxes of this level, a multiple of LEAF_POINTS
+    uint offsets[10];    // 24  first box of each level
+};
+
+// Of the neighbours of one batch.
+struct SearchParams {    // 40 bytes
+    uint first_slot;     //  0  of the object
+    uint point_count;    //  4  of the object
+    uint batch_first;    //  8  place in the object of the batch's first point, a multiple of LEAF_POINTS
+    uint batch_count;    // 12
+    uint neighbors;      // 16  k, less than point_count, or 1
+    uint stride;         // 20  entries of a point in the list of neighbours, a multiple of four
+    uint capacity;       // 24  entries of a list of leaves, a multiple of four
+    uint root;           // 28  the first box of the highest level
+    uint leaf_count;     // 32  boxes of points, which come first
+    uint listed;         // 36  leaves of the batch that are looked at again, with a larger capacity; 0: all are
+};
+
+// Of one batch.
+struct SmoothParams {    // 16 bytes
+    uint first_slot;     //  0  of the batch
+    uint point_count;    //  4  in the batch
+    uint stride;         //  8  entries of a point in the list of neighbours
+    uint round;          // 12  0: reaches are written; 1: sizes
+};
+
 // A trust ball that ends at a rim.
 struct BallClip {        // 20 bytes
     uint slot;           //  0
@@ -221,10 +282,10 @@ struct ClipParams {      // 4 bytes
     uint count;          // 0
 };
 
-struct FitParams {       // 44 bytes
+struct FitParams {       // 48 bytes
     uint first_slot;     //  0  of this batch
     uint point_count;    //  4  in this batch
-    uint neighbors;      //  8  entries a point in the list of neighbours
+    uint neighbors;      //  8  entries a point in the list of neighbours, a multiple of four
     uint polynomial;     // 12  FIT_FULL or FIT_INCOMPLETE: the first kind tried
     float feature_size;  // 16  h for all points; 0: the distance to the last neighbour; -1: sizes
     float trust;         // 20  b / h
@@ -233,6 +294,7 @@ struct FitParams {       // 44 bytes
     float weight_scale;  // 32  h over the width of the weights
     uint close_gaps;     // 36  1: b grows, at most to h, where neighbours leave a gap
     float rim_limit;     // 40  of the distance to the centroid, over the neighbours' reach; 0: no rims
+    uint bound_from;     // 44  slot that the buffers by slot are bound from; points are bound as a whole
 };
 
 struct GridInfo {        // 32 bytes
@@ -242,10 +304,15 @@ struct GridInfo {        // 32 bytes
     float inverse_edge;  // 28
 };
 
-struct GridParams {      // 12 bytes
-    uint point_count;    // 0
-    uint pair_count;     // 4
-    float ball_scale;    // 8  radius listed over trust radius; 0: each point in its own cell alone
+// Of one slab: some layers of cells along z.
+struct GridParams {      // 28 bytes
+    uint point_count;    //  0
+    uint pair_count;     //  4  of the slab
+    float ball_scale;    //  8  radius listed over trust radius; 0: each point in its own cell alone
+    uint first_layer;    // 12
+    uint end_layer;      // 16  past the last
+    uint first_pair;     // 20  pairs of the slabs before
+    uint any_large;      // 24  1: balls may be large
 };
 
 struct ScanParams {      // 8 bytes

@@ -114,6 +114,25 @@ fn lists_longer_than_a_row_of_a_dispatch_are_the_same_to_the_bit() {
     assert!(large.slots.len() > 1 << 20, "{} pairs", large.slots.len());
 }
 
+/// More pairs of cell and point than are sorted in one go, so many that the grid is listed in slabs; and balls
+/// so large that their pairs are emitted one by one, in a grid so fine that they meet thousands of cells.
+#[test]
+fn grids_listed_in_slabs_are_the_same_to_the_bit() {
+    let settings = |resolution| {
+        format!(
+            "[image]\nsize = [48, 32]\n[render]\ngrid_resolution = {resolution}\n[[objects]]\n\
+             points = \"s.ply\"\nsurface = {{ normals = \"polynomial\", trust = 1.0 }}"
+        )
+    };
+    let slabs = check("slabs", &settings(300), fibonacci_sphere(520_000));
+    assert!(slabs.slots.len() > 7_000_000, "{} pairs", slabs.slots.len());
+    let mut uneven = fibonacci_sphere(20_000);
+    uneven.extend(fibonacci_sphere(100).into_iter().map(|p| p.map(|x| 1.5 * x)));
+    let large = check("large balls", &settings(90), uneven);
+    let most = large.cells.iter().map(|range| range[1] - range[0]).max().unwrap_or(0);
+    assert!(most > 0 && large.slots.len() > 100_000, "{} pairs", large.slots.len());
+}
+
 /// Half of a file's points are no numbers: they are dropped and counted, the rest is the same to the
 /// bit, and indices are places in the file.
 #[test]

@@ -202,6 +202,22 @@ impl Built {
         }
     }
 
+    /// Milliseconds of each kernel of the build, where it ran on a device.
+    pub fn kernels(&self) -> &[(&'static str, f64)] {
+        match &self.surfaces {
+            BuiltOn::Gpu(renderer) => &renderer.surfaces().kernels,
+            BuiltOn::Single(_) | BuiltOn::Double(_) => &[],
+        }
+    }
+
+    /// Points whose neighbours the device left to the CPU.
+    pub fn searched_on_cpu(&self) -> u64 {
+        match &self.surfaces {
+            BuiltOn::Gpu(renderer) => renderer.surfaces().searched_on_host,
+            BuiltOn::Single(_) | BuiltOn::Double(_) => 0,
+        }
+    }
+
     /// Bytes that tracing needs: polynomials, cells and their lists.
     pub fn bytes(&self) -> u64 {
         fn of<R>(reference: &Reference<R>) -> u64 {

@@ -28,6 +28,12 @@ pub struct Row {
     pub build_ms: Spread,
     /// How many builds that is of. Where there are several, the first is not among them.
     pub builds: u32,
+    /// The same on the CPU with a k-d tree, neighbours and fits alone; where `bench --cpu-preparation` asks for it.
+    pub cpu_preparation_ms: Option<Spread>,
+    /// Milliseconds of each kernel of the last build.
+    pub build_kernels: BTreeMap<&'static str, f64>,
+    /// Points whose neighbours the device left to the CPU, since its search is bounded.
+    pub searched_on_cpu: u64,
     /// What of the first build and frame the driver took to make pipelines; not in `trace_ms`.
     pub pipelines_ms: f64,
     /// The frame before those that are timed, with what the driver compiles at a first dispatch.
@@ -173,6 +179,9 @@ impl Row {
             gpu_ms: frame.gpu_ms().map(|ms| Spread { median: ms, min: ms, max: ms }),
             build_ms: Spread::of(&[built.duration]),
             builds: 1,
+            cpu_preparation_ms: None,
+            build_kernels: built.kernels().iter().copied().collect(),
+            searched_on_cpu: built.searched_on_cpu(),
             pipelines_ms: milliseconds(built.pipelines + frame.pipelines),
             warm_up_ms: None,
             frames_per_second: 1e3 / trace_ms.median.max(1e-6),

@@ -42,11 +42,17 @@ impl Buffer {
     /// A buffer whose content is undefined. Zero bytes become 16, so that an empty list can be
     /// bound like any other.
     pub fn new(device: &Arc<Device>, name: &'static str, bytes: u64) -> Result<Self, GpuError> {
-        let bytes = if bytes == 0 { TEXEL_BYTES } else { bytes };
         let limit = device.limits().max_storage_buffer_range;
         if bytes > limit {
             return Err(GpuError::BufferTooLarge { name, needed: bytes, limit });
         }
+        Self::paged(device, name, bytes)
+    }
+
+    /// The same for one that may be longer than a storage buffer binding: it is bound as texels, or in parts
+    /// (`PassBuilder::buffer_part`).
+    pub fn paged(device: &Arc<Device>, name: &'static str, bytes: u64) -> Result<Self, GpuError> {
+        let bytes = if bytes == 0 { TEXEL_BYTES } else { bytes };
         let raw = &device.raw;
         // Whole texels, so that a texel view reaches the end.
         let info = vk::BufferCreateInfo::default().size(bytes.next_multiple_of(TEXEL_BYTES)).usage(
@@ -88,6 +94,17 @@ impl Buffer {
         data: &[T],
     ) -> Result<Self, GpuError> {
         let buffer = Self::new(device, name, size_of_val(data) as u64)?;
+        buffer.write(0, data)?;
+        Ok(buffer)
+    }
+
+    /// A buffer that holds `data`, and may be longer than a storage buffer binding.
+    pub fn paged_from_slice<T: NoUninit>(
+        device: &Arc<Device>,
+        name: &'static str,
+        data: &[T],
+    ) -> Result<Self, GpuError> {
+        let buffer = Self::paged(device, name, size_of_val(data) as u64)?;
         buffer.write(0, data)?;
         Ok(buffer)
     }

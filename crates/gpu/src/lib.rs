@@ -39,7 +39,7 @@ pub use error::GpuError;
 pub use image::{Image, ImageFormat};
 pub use instance::{Instance, InstanceOptions};
 pub use kernel::{Binding, Kernel, Texel};
-pub use recorder::{PassBuilder, Recorder, Timings};
+pub use recorder::{PART_ALIGNMENT, PassBuilder, Recorder, Timings};
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

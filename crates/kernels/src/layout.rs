@@ -80,6 +80,36 @@ constants! {
     FIT_SIZES = 4;
     /// Binding of `fit_polynomials`: [`Rim`]s of the batch.
     FIT_RIMS = 5;
+    /// Binding of the neighbour search: every point.
+    SEARCH_POINTS = 0;
+    /// Binding of the neighbour search: [`SearchNode`]s of an object, level over level.
+    SEARCH_NODES = 1;
+    /// Binding of the neighbour search: of each point of the batch, d² that holds k others.
+    SEARCH_BOUNDS = 2;
+    /// Binding of the neighbour search: leaves that the balls of each leaf of the batch touch.
+    SEARCH_LEAVES = 3;
+    /// Binding of the neighbour search: how many those are, or [`NONE`]: more than there is room for.
+    SEARCH_COUNTS = 4;
+    /// Binding of the neighbour search: neighbours of the batch's points.
+    SEARCH_LISTS = 5;
+    /// Binding of the neighbour search: leaves of the batch that are looked at again.
+    SEARCH_GROUPS = 6;
+    /// Consecutive slots that share a box, and so a list of leaves; children of a node.
+    LEAF_POINTS = 8;
+    /// Levels of boxes, at most.
+    LEAF_LEVELS = 10;
+    /// Bits of an entry of a list of leaves that say which; the others say for which points.
+    LEAF_BITS = 24;
+    /// Boxes that the search for one list of leaves may look at.
+    LEAF_STEPS = 32_768;
+    /// Binding of `smooth_sizes`: every point.
+    SMOOTH_POINTS = 0;
+    /// Binding of `smooth_sizes`: neighbours of the batch's points.
+    SMOOTH_LISTS = 1;
+    /// Binding of `smooth_sizes`: distance of each point to its last neighbour, by slot.
+    SMOOTH_REACHES = 2;
+    /// Binding of `smooth_sizes`: h by slot.
+    SMOOTH_SIZES = 3;
     /// Binding of `clip_balls`: [`BallClip`]s.
     CLIP_CLIPS = 0;
     /// Binding of `clip_balls`: polynomials.
@@ -98,6 +128,8 @@ constants! {
     GRID_SLOTS = 5;
     /// Binding of the grid build: first and past-the-last pair of each cell.
     GRID_CELLS = 6;
+    /// Binding of the grid build: counts, then offsets, of large balls alone, by ordinal.
+    GRID_LARGE = 7;
     /// Binding of the scan: values, turned into prefix sums in place.
     SCAN_VALUES = 0;
     /// Binding of the scan: sums of runs, or what comes before each.
@@ -370,6 +402,89 @@ pub struct Rim {
 }
 gpu_layout!(Rim, 20, { outward: 0, reach: 12, openness: 16 });
 
+/// The box around [`LEAF_POINTS`] points, or around as many boxes. Empty where `low` is above `high`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct SearchNode {
+    /// Lowest corner.
+    pub low: [f32; 3],
+    /// The first of the boxes inside, or [`NONE`]: points are.
+    pub child: u32,
+    /// Highest corner.
+    pub high: [f32; 3],
+    /// The box to look at once this one and all inside are done, or [`NONE`].
+    pub next: u32,
+}
+gpu_layout!(SearchNode, 32, { low: 0, child: 12, high: 16, next: 28 });
+
+/// Parameters of `leaf_boxes` and `node_boxes`: one level of the boxes of an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct LevelParams {
+    /// Of the object.
+    pub first_slot: u32,
+    /// Of the object.
+    pub point_count: u32,
+    /// k.
+    pub neighbors: u32,
+    /// 0: the boxes of points.
+    pub level: u32,
+    /// The highest level: it has [`LEAF_POINTS`] boxes.
+    pub top: u32,
+    /// Boxes of this level, a multiple of [`LEAF_POINTS`].
+    pub count: u32,
+    /// First box of each level.
+    pub offsets: [u32; LEAF_LEVELS as usize],
+}
+gpu_layout!(LevelParams, 64, {
+    first_slot: 0, point_count: 4, neighbors: 8, level: 12, top: 16, count: 20, offsets: 24,
+});
+
+/// Parameters of the neighbour search for one batch of points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct SearchParams {
+    /// Of the object.
+    pub first_slot: u32,
+    /// Of the object.
+    pub point_count: u32,
+    /// Place in the object of the batch's first point, a multiple of [`LEAF_POINTS`].
+    pub batch_first: u32,
+    /// Points of the batch.
+    pub batch_count: u32,
+    /// k: less than `point_count`, or 1.
+    pub neighbors: u32,
+    /// Entries of a point in the list of neighbours, a multiple of four.
+    pub stride: u32,
+    /// Entries of a list of leaves, a multiple of four.
+    pub capacity: u32,
+    /// The first box of the highest level.
+    pub root: u32,
+    /// Boxes of points, which come first.
+    pub leaf_count: u32,
+    /// How many leaves of the batch are looked at again, with a larger capacity; 0: all are looked at.
+    pub listed: u32,
+}
+gpu_layout!(SearchParams, 40, {
+    first_slot: 0, point_count: 4, batch_first: 8, batch_count: 12, neighbors: 16, stride: 20,
+    capacity: 24, root: 28, leaf_count: 32, listed: 36,
+});
+
+/// Parameters of `smooth_sizes` for one batch of points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct SmoothParams {
+    /// Of the batch.
+    pub first_slot: u32,
+    /// Points of the batch.
+    pub point_count: u32,
+    /// Entries of a point in the list of neighbours.
+    pub stride: u32,
+    /// 0: reaches are written; 1: sizes.
+    pub round: u32,
+}
+gpu_layout!(SmoothParams, 16, { first_slot: 0, point_count: 4, stride: 8, round: 12 });
+
 /// A trust ball that ends at a rim.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -400,7 +515,7 @@ pub struct FitParams {
     pub first_slot: u32,
     /// Points in this batch.
     pub point_count: u32,
-    /// Entries a point in the list of neighbours.
+    /// Entries a point in the list of neighbours, a multiple of four; of a plan: k.
     pub neighbors: u32,
     /// `FIT_FULL` or `FIT_INCOMPLETE`: the first kind tried.
     pub polynomial: u32,
@@ -418,10 +533,13 @@ pub struct FitParams {
     pub close_gaps: u32,
     /// Of the distance to the centroid, over the reach of the neighbours; 0: no rims.
     pub rim_limit: f32,
+    /// Slot that the buffers by slot are bound from; points are bound as a whole.
+    pub bound_from: u32,
 }
-gpu_layout!(FitParams, 44, {
+gpu_layout!(FitParams, 48, {
     first_slot: 0, point_count: 4, neighbors: 8, polynomial: 12, feature_size: 16, trust: 20,
     object: 24, first_listed: 28, weight_scale: 32, close_gaps: 36, rim_limit: 40,
+    bound_from: 44,
 });
 
 /// The uniform grid's place and size.
@@ -453,12 +571,23 @@ impl GridInfo {
 pub struct GridParams {
     /// Points of the scene.
     pub point_count: u32,
-    /// Pairs of a cell and a point near it.
+    /// Pairs of a cell of the slab and a point near it.
     pub pair_count: u32,
     /// Radius listed over trust radius; 0: each point in its own cell alone.
     pub ball_scale: f32,
+    /// First layer of cells along z of the slab.
+    pub first_layer: u32,
+    /// Past the last.
+    pub end_layer: u32,
+    /// Pairs of the slabs before.
+    pub first_pair: u32,
+    /// 1 where balls may be large.
+    pub any_large: u32,
 }
-gpu_layout!(GridParams, 12, { point_count: 0, pair_count: 4, ball_scale: 8 });
+gpu_layout!(GridParams, 28, {
+    point_count: 0, pair_count: 4, ball_scale: 8, first_layer: 12, end_layer: 16, first_pair: 20,
+    any_large: 24,
+});
 
 /// Push constants of the scan.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -1045,6 +1174,10 @@ pub const STRUCTS: &[StructLayout] = &[
     Polynomial::LAYOUT,
     FitOutcome::LAYOUT,
     Rim::LAYOUT,
+    SearchNode::LAYOUT,
+    LevelParams::LAYOUT,
+    SearchParams::LAYOUT,
+    SmoothParams::LAYOUT,
     BallClip::LAYOUT,
     ClipParams::LAYOUT,
     FitParams::LAYOUT,

@@ -26,6 +26,12 @@ macro_rules! modules {
 modules! {
     /// Adds a sample to each pixel's sum.
     accumulate,
+    /// How far the nearest of each point can be, for many of them.
+    bound_reach,
+    /// `bound_reach`, reading points through a uniform texel buffer.
+    bound_reach_texels,
+    /// `bound_reach_texels` for up to 16.
+    bound_reach_texels_few,
     /// The camera's ray of each pixel.
     camera_rays,
     /// `camera_rays` for rays in a queue.
@@ -48,12 +54,34 @@ modules! {
     disc_trace,
     /// `disc_trace` for rays in a queue.
     disc_trace_queue,
+    /// The nearest of each point, for many of them.
+    find_neighbors,
+    /// `find_neighbors`, reading points through a uniform texel buffer.
+    find_neighbors_texels,
+    /// `find_neighbors_texels` for up to 16.
+    find_neighbors_texels_few,
     /// The local polynomial of each point.
     fit_polynomials,
-    /// Cells around each trust ball.
+    /// The same, reading points through a uniform texel buffer.
+    fit_polynomials_texels,
+    /// `fit_polynomials_texels` for lists of up to 16.
+    fit_polynomials_texels_few,
+    /// Boxes of points that the balls of others touch.
+    gather_leaves,
+    /// The same, reading points and boxes through uniform texel buffers.
+    gather_leaves_texels,
+    /// Cells that each trust ball meets.
     grid_count,
+    /// The same, reading polynomials through a uniform texel buffer.
+    grid_count_texels,
     /// Pairs of cell and point.
     grid_emit,
+    /// Those of large balls.
+    grid_emit_large,
+    /// The same, reading polynomials through a uniform texel buffer.
+    grid_emit_large_texels,
+    /// `grid_emit`, reading polynomials through a uniform texel buffer.
+    grid_emit_texels,
     /// Where each cell's points begin and end.
     grid_ranges,
     /// One pass of the traversal.
@@ -72,6 +100,10 @@ modules! {
     isosurface_shadows,
     /// `isosurface_shadows` for rays in a queue.
     isosurface_shadows_queue,
+    /// Boxes around points.
+    leaf_boxes,
+    /// The same, reading points through a uniform texel buffer.
+    leaf_boxes_texels,
     /// The rays that hit a diffuse surface, one after another.
     list_lit,
     /// `list_lit` for rays in a queue.
@@ -80,6 +112,8 @@ modules! {
     list_live,
     /// The points of each cell with their positions.
     list_points,
+    /// The same, reading polynomials through a uniform texel buffer.
+    list_points_texels,
     /// Rays through volumes.
     march,
     /// Rays through volumes that lights shine into.
@@ -96,6 +130,8 @@ modules! {
     mark_live,
     /// `mark_live` for rays in a queue.
     mark_live_queue,
+    /// Boxes around boxes.
+    node_boxes,
     /// What of a light's reaches the points of a volume.
     point_lights,
     /// `point_lights` for rays in a queue.
@@ -128,6 +164,10 @@ modules! {
     shadow_rays,
     /// `shadow_rays` for rays in a queue.
     shadow_rays_queue,
+    /// Feature sizes as means over neighbours.
+    smooth_sizes,
+    /// The same, reading points through a uniform texel buffer.
+    smooth_sizes_texels,
     /// Stable sort by one digit, first half.
     sort_count,
     /// Stable sort by one digit, second half.
@@ -140,16 +180,28 @@ modules! {
 
 /// Modules made of another kernel's source with macros defined: name, kernel, macros.
 pub const VARIANTS: &[(&str, &str, &[&str])] = &[
+    ("bound_reach_texels", "bound_reach", &["POINTS_AS_TEXELS"]),
+    ("bound_reach_texels_few", "bound_reach", &["POINTS_AS_TEXELS", "FEW"]),
     ("camera_rays_queue", "camera_rays", &["QUEUE"]),
     ("classify_queue", "classify", &["QUEUE"]),
     ("disc_trace_queue", "disc_trace", &["QUEUE"]),
+    ("find_neighbors_texels", "find_neighbors", &["POINTS_AS_TEXELS"]),
+    ("find_neighbors_texels_few", "find_neighbors", &["POINTS_AS_TEXELS", "FEW"]),
+    ("fit_polynomials_texels", "fit_polynomials", &["POINTS_AS_TEXELS"]),
+    ("fit_polynomials_texels_few", "fit_polynomials", &["POINTS_AS_TEXELS", "FEW"]),
+    ("gather_leaves_texels", "gather_leaves", &["POINTS_AS_TEXELS"]),
+    ("grid_count_texels", "grid_count", &["POINTS_AS_TEXELS"]),
+    ("grid_emit_large_texels", "grid_emit_large", &["POINTS_AS_TEXELS"]),
+    ("grid_emit_texels", "grid_emit", &["POINTS_AS_TEXELS"]),
     ("grid_trace_leaving", "grid_trace", &["LEAVES"]),
     ("grid_trace_leaving_queue", "grid_trace", &["LEAVES", "QUEUE"]),
     ("grid_trace_queue", "grid_trace", &["QUEUE"]),
     ("isosurface_queue", "isosurface", &["QUEUE"]),
     ("isosurface_shadows", "isosurface", &["SHADOWS"]),
     ("isosurface_shadows_queue", "isosurface", &["SHADOWS", "QUEUE"]),
+    ("leaf_boxes_texels", "leaf_boxes", &["POINTS_AS_TEXELS"]),
     ("list_lit_queue", "list_lit", &["QUEUE"]),
+    ("list_points_texels", "list_points", &["POINTS_AS_TEXELS"]),
     ("march_lit", "march", &["LIT"]),
     ("march_lit_queue", "march", &["LIT", "QUEUE"]),
     ("march_queue", "march", &["QUEUE"]),
@@ -163,6 +215,7 @@ pub const VARIANTS: &[(&str, &str, &[&str])] = &[
     ("scatter_queue", "scatter", &["QUEUE"]),
     ("shade_queue", "shade", &["QUEUE"]),
     ("shadow_rays_queue", "shadow_rays", &["QUEUE"]),
+    ("smooth_sizes_texels", "smooth_sizes", &["POINTS_AS_TEXELS"]),
     ("surface_hit_queue", "surface_hit", &["QUEUE"]),
 ];
 

@@ -1,4 +1,4 @@
-//! Twin of the grid build: `grid_count`, `grid_emit`, the scan, the sort and `grid_ranges`.
+//! Twin of the grid build: `grid_count`, `grid_emit`, `grid_emit_large`, the scan, the sort and `grid_ranges`.
 //!
 //! A prefix sum and a stable sort have but one result, so the twin takes the library's.
 

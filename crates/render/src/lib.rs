@@ -39,6 +39,9 @@ pub enum RenderError {
         /// Bytes allowed.
         limit: u64,
     },
+    /// More points than the device has memory for, said before any is taken.
+    #[error(transparent)]
+    Memory(BuildError),
     /// The watcher asked for an end.
     #[error("interrupted")]
     Interrupted,
@@ -48,6 +51,7 @@ impl From<BuildError> for RenderError {
     fn from(error: BuildError) -> Self {
         match error {
             BuildError::Gpu(error) => Self::Gpu(error),
+            error @ BuildError::Memory { .. } => Self::Memory(error),
             BuildError::Interrupted => Self::Interrupted,
         }
     }
