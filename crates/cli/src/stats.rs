@@ -42,6 +42,8 @@ pub struct Row {
     pub frames_per_second: f64,
     /// Frames a second that the paper states.
     pub paper_frames_per_second: Option<f64>,
+    /// Columns and rows of the picture.
+    pub size: [u32; 2],
     /// Rays by kind.
     pub rays: Rays,
     /// How fast they are.
@@ -186,6 +188,7 @@ impl Row {
             warm_up_ms: None,
             frames_per_second: 1e3 / trace_ms.median.max(1e-6),
             paper_frames_per_second: None,
+            size: plan.image_size,
             rays,
             rays_per_second: RaysPerSecond::new(&rays, trace_ms.median, &frame.traversal),
             cells_per_pass: plan.cells_per_pass,

@@ -6,8 +6,9 @@ use std::path::Path;
 
 /// A picture as planes by name.
 ///
-/// An EXR of several parts has its channels as `part.channel`, unless the channel's name begins with
-/// its part's already. PNG, JPEG and Radiance HDR have `R`, `G`, `B`, and `A` where the file has one.
+/// A channel keeps its name where only one part of an EXR has it: so the same channels are the same picture,
+/// in one part or in several. A name that several parts have becomes `part.channel`, unless it begins with its
+/// part's already. PNG, JPEG and Radiance HDR have `R`, `G`, `B`, and `A` where the file has one.
 #[derive(Debug, Clone)]
 pub struct Picture {
     /// Width and height of the display window, which is the whole of a file that has none.
@@ -102,7 +103,10 @@ impl Picture {
     /// The channels of all parts.
     #[must_use]
     pub fn from_exr(file: ExrFile) -> Self {
-        let several = file.parts.len() > 1;
+        let mut parts_with: BTreeMap<String, usize> = BTreeMap::new();
+        for name in file.parts.iter().flat_map(|part| part.channels.keys()) {
+            *parts_with.entry(name.clone()).or_default() += 1;
+        }
         let mut picture = Self {
             size: file.display_size,
             channels: BTreeMap::new(),
@@ -117,7 +121,7 @@ impl Picture {
             let window = Rect { x: offset(0), y: offset(1), width, height };
             let prefix = format!("{}.", part.name.unwrap_or_else(|| index.to_string()));
             for (name, samples) in part.channels {
-                let name = match several && !name.starts_with(&prefix) {
+                let name = match parts_with[&name] > 1 && !name.starts_with(&prefix) {
                     true => format!("{prefix}{name}"),
                     false => name,
                 };

@@ -141,9 +141,9 @@ fn names_mean_channels_and_layers_of_both() {
     assert!(error.to_string().contains("2x1 pixels against one of 1x2"), "{error}");
 }
 
-/// Two parts of which one has its name in its channels already, and a data window of its own.
+/// Three parts, two of which have an `R`. One has its name in its channel already, and a data window of its own.
 #[test]
-fn parts_are_layers_by_their_names_where_they_lie() {
+fn parts_are_one_picture_and_layers_where_their_names_are_the_same() {
     use exr::meta::attribute::IntegerBounds;
     use exr::meta::header::{ImageAttributes, LayerAttributes};
     use exr::prelude::{
@@ -161,7 +161,8 @@ fn parts_are_layers_by_their_names_where_they_lie() {
     };
     let display = IntegerBounds { position: Vec2(10, 20), size: Vec2(8, 6) };
     let layers = vec![
-        part("beauty", Vec2(10, 20), (8, 6), "R"),
+        part("left", Vec2(10, 20), (8, 6), "R"),
+        part("right", Vec2(10, 20), (8, 6), "R"),
         part("depth", Vec2(13, 19), (2, 3), "depth.Z"),
     ];
     let file = tempfile::NamedTempFile::new().unwrap();
@@ -169,17 +170,17 @@ fn parts_are_layers_by_their_names_where_they_lie() {
     image.write().to_file(file.path()).unwrap();
 
     let picture = Picture::read(file.path()).unwrap();
-    assert_eq!((picture.size, picture.headers.len()), ([8, 6], 2));
+    assert_eq!((picture.size, picture.headers.len()), ([8, 6], 3));
     let names: Vec<&String> = picture.channels.keys().collect();
-    assert_eq!(names, ["beauty.R", "depth.Z"]);
-    assert_eq!(picture.channels["beauty.R"].window, whole(8, 6));
+    assert_eq!(names, ["depth.Z", "left.R", "right.R"]);
+    assert_eq!(picture.channels["left.R"].window, whole(8, 6));
     let above = Rect { x: 3, y: -1, width: 2, height: 3 };
     assert_eq!(picture.channels["depth.Z"].window, above, "one row above the display window");
     let pair = Pair::new(picture.clone(), picture).unwrap();
-    assert_eq!(pair.region(&["beauty.R"]).unwrap(), whole(8, 6));
+    assert_eq!(pair.region(&["left.R"]).unwrap(), whole(8, 6));
     assert_eq!(pair.region(&["depth.Z"]).unwrap(), above);
     let common = Rect { y: 0, height: 2, ..above };
-    assert_eq!(pair.region(&["beauty.R", "depth.Z"]).unwrap(), common);
+    assert_eq!(pair.region(&["left.R", "depth.Z"]).unwrap(), common);
     assert_eq!(pair.measure(&["depth.Z"], above).values, 6);
 }
 

@@ -52,6 +52,13 @@ impl Cases {
         Ok(cases)
     }
 
+    /// Name and suite of each, skipped ones too.
+    pub fn names(&self) -> impl Iterator<Item = (&str, Option<&str>)> {
+        let cases = self.cases.iter().map(|case| (case.name.as_str(), case.suite.as_deref()));
+        let skipped = self.skipped.iter().map(|row| (row.name.as_str(), Some(row.suite.as_str())));
+        cases.chain(skipped)
+    }
+
     fn add_scene(&mut self, path: PathBuf, overrides: &Overrides) -> Result<(), Failure> {
         let values = SceneValues::new(overrides);
         let input = Input::load(&path, &values, None)?;

@@ -31,6 +31,8 @@ struct EarlierRow {
     name: String,
     #[serde(default)]
     suite: Option<String>,
+    #[serde(default)]
+    size: Option<[u32; 2]>,
     trace_ms: Spread,
     build_ms: Spread,
     pixels: String,
@@ -58,6 +60,8 @@ pub struct Change {
     pub row: Presence,
     /// Whether the pictures are the same, where both have one.
     pub same_picture: Option<bool>,
+    /// The earlier picture's columns and rows, where they are others: a picture changed, but not the work alone.
+    pub other_size: Option<[u32; 2]>,
     /// Time of a frame.
     pub trace: Option<Speed>,
     /// Time of a build.
@@ -126,6 +130,29 @@ impl Earlier {
         Ok(earlier)
     }
 
+    /// Fails where it has none of these rows, by name and suite: nothing could be compared.
+    pub fn require_any<'a>(
+        &self,
+        mut rows: impl Iterator<Item = (&'a str, Option<&'a str>)>,
+    ) -> Result<(), Failure> {
+        let known = |(name, suite): (&str, Option<&str>)| {
+            self.rows.iter().any(|old| old.name == name && old.suite.as_deref() == suite)
+        };
+        if rows.any(known) {
+            return Ok(());
+        }
+        let mut has: Vec<&str> = self.rows.iter().map(|old| old.name.as_str()).take(3).collect();
+        if self.rows.len() > has.len() {
+            has.push("...");
+        }
+        let has = if has.is_empty() { "none".to_owned() } else { has.join("; ") };
+        Err(Failure::usage(format!(
+            "{}: found none of the rows that are to be timed, but {has}; give a report of the same suite or \
+             scene",
+            self.file
+        )))
+    }
+
     /// Holds a report against it. `tolerance` is a part of the earlier time.
     pub fn compare(self, report: &Report, tolerance: f64) -> Comparison {
         let Self { file, device, driver, rows: mut earlier } = self;
@@ -168,6 +195,9 @@ impl Comparison {
             format!(" (measured on another device, so its times say little: {device})")
         });
         let found = match self.pass {
+            true if self.rows.iter().all(|change| change.row != Presence::Both) => {
+                "nothing, since no row was measured in both"
+            }
             true => "no picture changed, and nothing got slower beyond its spread",
             false => "a picture changed, or something got slower beyond its spread",
         };
@@ -177,12 +207,15 @@ impl Comparison {
     /// A line a row.
     pub fn table(&self) -> Table {
         let cells = |change: &Change| {
-            let picture = match (change.row, change.same_picture) {
-                (Presence::Both, Some(true)) => "same",
-                (Presence::Both, _) => "changed",
-                (Presence::New, _) => "new row",
-                (Presence::Missing, _) => "missing row",
-                (Presence::Skipped, _) => "skipped now",
+            let picture = match (change.row, change.same_picture, change.other_size) {
+                (Presence::Both, _, Some([width, height])) => {
+                    format!("changed, was {width}x{height}")
+                }
+                (Presence::Both, Some(true), None) => "same".to_owned(),
+                (Presence::Both, _, None) => "changed".to_owned(),
+                (Presence::New, ..) => "new row".to_owned(),
+                (Presence::Missing, ..) => "missing row".to_owned(),
+                (Presence::Skipped, ..) => "skipped now".to_owned(),
             };
             let speed = |speed: Option<Speed>| {
                 speed.map_or_else(String::new, |Speed { ratio, verdict }| match verdict {
@@ -191,7 +224,7 @@ impl Comparison {
                     Verdict::Slower => format!("slower, {}x", short(ratio)),
                 })
             };
-            vec![change.name.clone(), picture.to_owned(), speed(change.trace), speed(change.build)]
+            vec![change.name.clone(), picture, speed(change.trace), speed(change.build)]
         };
         Table::new(
             vec!["scene", "picture", "trace", "build"],
@@ -205,13 +238,21 @@ fn change(row: &Row, old: &EarlierRow, tolerance: f64) -> Change {
         name: row.name.clone(),
         row: Presence::Both,
         same_picture: Some(row.pixels == old.pixels),
+        other_size: old.size.filter(|size| *size != row.size),
         trace: Some(speed(row.trace_ms, old.trace_ms, tolerance)),
         build: Some(speed(row.build_ms, old.build_ms, tolerance)),
     }
 }
 
 fn without_times(name: &str, row: Presence) -> Change {
-    Change { name: name.to_owned(), row, same_picture: None, trace: None, build: None }
+    Change {
+        name: name.to_owned(),
+        row,
+        same_picture: None,
+        other_size: None,
+        trace: None,
+        build: None,
+    }
 }
 
 fn speed(new: Spread, old: Spread, tolerance: f64) -> Speed {

@@ -16,6 +16,7 @@ type Column = (&'static str, fn(&Row) -> Option<String>);
 const COLUMNS: &[Column] = &[
     ("scene", |row| Some(row.name.clone())),
     ("points", |row| Some(row.points.to_string())),
+    ("size", |row| Some(format!("{}x{}", row.size[0], row.size[1]))),
     ("trace ms", |row| Some(short(row.trace_ms.median))),
     ("min", |row| Some(short(row.trace_ms.min))),
     ("max", |row| Some(short(row.trace_ms.max))),

@@ -33,6 +33,7 @@ pub fn run(args: &BenchArgs) -> Result<Exit, Failure> {
     let earlier = args.compare.as_deref().map(Earlier::read).transpose()?;
     let mut suites = Suites::default();
     let cases = Cases::new(args, &mut suites)?;
+    earlier.as_ref().map_or(Ok(()), |earlier| earlier.require_any(cases.names()))?;
     let mut inputs: Vec<&Path> = cases.cases.iter().flat_map(|case| case.input.files()).collect();
     inputs.extend(cases.suites.iter().chain(&args.compare).map(|path| path.as_path()));
     files::check_distinct(&outputs, &inputs)?;

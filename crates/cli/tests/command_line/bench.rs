@@ -80,6 +80,7 @@ fn a_suite_of_ones_own_is_timed_and_reported() {
 
     let rows = report["rows"].as_array().expect("rows");
     assert_eq!(rows.len(), 5);
+    assert_eq!(rows[0]["size"], json!([24, 16]));
     assert_eq!(rows[0]["paper_frames_per_second"], json!(25.0));
     assert_eq!(rows[1]["pixels"], rows[2]["pixels"], "K changes no pixel");
     assert_eq!([&rows[1]["cells_per_pass"], &rows[2]["cells_per_pass"]], [1, 0]);
@@ -252,6 +253,15 @@ fn changed_speeds_and_pictures_are_found() {
     let changed: Vec<&Value> = found.iter().filter(|row| row["same_picture"] == false).collect();
     assert_eq!(changed.len(), 1);
     assert_eq!(changed[0]["name"], "glass, K = all");
+
+    let mut larger = doctored(&report, 1.0, 1e3);
+    larger["rows"][0]["size"] = json!([64, 48]);
+    larger["rows"][0]["pixels"] = json!("0123456789abcdef");
+    let ran = compare(&larger, "mine.toml");
+    assert!(ran.stdout.contains("changed, was 64x48"), "{}", ran.stdout);
+    assert_eq!(verdict()["rows"][0]["other_size"], json!([64, 48]));
+    compare(&report, "smoke")
+        .fails_with(2, &["old.json", "none of the rows", "ball | shaded; glass"]);
 
     let mut renamed = doctored(&report, 1.0, 1e3);
     renamed["rows"][0]["name"] = json!("gone");

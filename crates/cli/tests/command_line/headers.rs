@@ -1,6 +1,6 @@
 //! What an EXR says of itself: provenance, standard attributes, and what other programs read there.
 
-use crate::{Folder, Ran, run_in, sphere};
+use crate::{Folder, Ran, run_in, said, sphere};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -159,13 +159,13 @@ fn printed(test: &str, program: &str, arguments: &[&str], folder: &Path) -> Opti
         Ok(output) => {
             let errors = String::from_utf8_lossy(&output.stderr).into_owned();
             if errors.contains("ModuleNotFoundError") || errors.contains("ImportError") {
-                eprintln!("SKIPPED a part of {test}: no module OpenEXR for {program} here");
+                said(&format!("SKIPPED: a part of {test}: no module OpenEXR for {program} here"));
                 return None;
             }
             panic!("{program} rejects the file: {errors}");
         }
         Err(error) => {
-            eprintln!("SKIPPED a part of {test}: no {program} here: {error}");
+            said(&format!("SKIPPED: a part of {test}: no {program} here: {error}"));
             None
         }
     }
