@@ -30,6 +30,8 @@ modules! {
     camera_rays,
     /// `camera_rays` for rays in a queue.
     camera_rays_queue,
+    /// The first wave from the eye to the film, where rays of a queue need none.
+    camera_trace,
     /// Where each cell's entries begin.
     cell_offsets,
     /// What becomes of each ray of a wave.
@@ -38,6 +40,8 @@ modules! {
     classify_queue,
     /// Trust balls that end at rims.
     clip_balls,
+    /// Bits set in each word of marks.
+    count_marked,
     /// Screen tiles that each disc covers.
     disc_count,
     /// Pairs of screen tile and point.
@@ -74,10 +78,10 @@ modules! {
     isosurface_shadows_queue,
     /// The rays that hit a diffuse surface, one after another.
     list_lit,
-    /// `list_lit` for rays in a queue.
-    list_lit_queue,
     /// The rays of a wave that have not ended, one after another.
     list_live,
+    /// The rays that are marked, one after another.
+    list_marked,
     /// The points of each cell with their positions.
     list_points,
     /// Rays through volumes.
@@ -149,7 +153,6 @@ pub const VARIANTS: &[(&str, &str, &[&str])] = &[
     ("isosurface_queue", "isosurface", &["QUEUE"]),
     ("isosurface_shadows", "isosurface", &["SHADOWS"]),
     ("isosurface_shadows_queue", "isosurface", &["SHADOWS", "QUEUE"]),
-    ("list_lit_queue", "list_lit", &["QUEUE"]),
     ("march_lit", "march", &["LIT"]),
     ("march_lit_queue", "march", &["LIT", "QUEUE"]),
     ("march_queue", "march", &["QUEUE"]),
