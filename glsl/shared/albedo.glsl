@@ -9,6 +9,7 @@
 #include "blend.glsl"
 #include "grid.glsl"
 #include "image.glsl"
+#include "scene.glsl"
 #define LISTS
 #include "records.glsl"
 
@@ -60,18 +61,20 @@ vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
 // The albedo at x of the object at `index`, whose point at `slot` was hit.
 vec3 albedo_at(uint index, uint slot, vec3 x) {
     ObjectInfo object = objects[index];
+    bool has_values = scene_has(SCENE_VALUES) && object.first_color != NONE;
+    bool has_texture = scene_has(SCENE_TEXTURES) && object.texture != NONE;
     vec3 value = vec3(0.0);
-    uint value_count = object.first_color != NONE ? 1u : 0u;
-    for (uint i = 0u; i < value_count; ++i) value = blended_value(object, slot, x);
-    bool has_texture = object.texture != NONE;
-    vec3 color = value_count > 0u && !has_texture ? value : object.albedo;
-    float u = dot3(object.texture_u.xyz, x) + object.texture_u.w;
-    float v = dot3(object.texture_v.xyz, x) + object.texture_v.w;
-    u = value_count > 0u ? value.x : u;
-    v = value_count > 0u ? value.y : v;
-    // A loop of one or none: lavapipe runs both sides of an `if` for every pixel.
-    uint texture_count = has_texture ? 1u : 0u;
-    for (uint i = 0u; i < texture_count; ++i) color = image_at(images[object.texture], u, v, false);
+    if (scene_has(SCENE_VALUES)) {
+        if (has_values) value = blended_value(object, slot, x);
+    }
+    vec3 color = has_values && !has_texture ? value : object.albedo;
+    if (scene_has(SCENE_TEXTURES)) {
+        float u = dot3(object.texture_u.xyz, x) + object.texture_u.w;
+        float v = dot3(object.texture_v.xyz, x) + object.texture_v.w;
+        u = has_values ? value.x : u;
+        v = has_values ? value.y : v;
+        if (has_texture) color = image_at(images[object.texture], u, v, false);
+    }
     return color;
 }
 #endif

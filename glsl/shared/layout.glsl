@@ -88,7 +88,6 @@
 #define STATE_IN 0   // then 1, 2, 3
 #define STATE_OUT 4  // then 5, 6, 7
 #define TRACE_INFO 8
-#define TRACE_KEYS 8 // disc_trace, which needs no grid
 #define TRACE_CELLS 9
 #define TRACE_SLOTS 10
 #define TRACE_POLYNOMIALS 11
@@ -144,6 +143,21 @@
 #define CHANNELS_ALL 7 // a path's channels: 1 red, 2 green, 4 blue
 #define PATH_REFLECTED 8 // beside them: the path was reflected somewhere
 
+// Of a wave.
+#define WAVE_FROM_CAMERA 1  // its rays come from there
+#define WAVE_SHARES_PATH 2  // and have one path, but for the pixel
+
+// What a scene has need of: bits of the specialization constant 0 (scene.glsl). Drivers leave out what it has not.
+#define SCENE_ENVIRONMENT 1 // rays that hit nothing see an image
+#define SCENE_BLENDS 2      // normals of an object are blended
+#define SCENE_LIGHTS 4      // and shade writes the colours of diffuse hits
+#define SCENE_ALPHA 8       // what each channel lets through is written
+#define SCENE_DIAGNOSTICS 16 // cells crossed, points hit and iterations are written
+#define SCENE_VALUES 32     // points of an object have colours, or places in a texture
+#define SCENE_TEXTURES 64
+#define SCENE_SAMPLES 128   // a pixel has several
+#define SCENE_REFINES 256   // hits of an object are refined
+
 // What transparent pictures leave the background out of.
 #define TRANSPARENT_CAMERA 1 // camera rays
 #define TRANSPARENT_GLASS 2 // and all that was refracted alone
@@ -161,6 +175,11 @@
 #define ISO_SEARCHES 41
 #define MARCH_LIGHT 42 // MarchLight by ray
 #define MARCH_VISIBLE 43
+#define DISC_RANGES_IN 44 // camera_trace and disc_trace read the lists of screen tiles
+#define DISC_KEYS_IN 45
+#define DISC_SLOTS_IN 46
+#define WAVE_LIT_HITS 47
+#define WAVE_MARKS 48
 #define SHADE_IMAGES 30
 #define SHADE_TEXELS 31
 
@@ -379,6 +398,34 @@ struct BackgroundInfo {  // 16 bytes
     uint environment;    // 12  an image, or NONE: color counts
 };
 
+struct CameraTraceParams { // 116 bytes
+    vec3 eye;            //  0  these as in CameraParams
+    float scale;         // 12
+    vec3 right;          // 16
+    float half_width;    // 28
+    vec3 up;             // 32
+    float half_height;   // 44
+    vec3 forward;        // 48
+    uint work;           // 60  loop iterations a ray may spend
+    uvec2 tile_origin;   // 64  in the full image, pixels
+    uvec2 tile_size;     // 72
+    BackgroundInfo background; // 80
+    DepthRanks ranks;    // 96
+    uint transparent;    // 112 TRANSPARENT_*, or 0: nothing leaves the background out
+};
+
+// Where light is asked for.
+struct LitHit {          // 32 bytes
+    vec3 position;       //  0  centred scene space
+    uint slot;           // 12  the point hit
+    vec3 normal;         // 16  unit, facing the ray's origin
+    uint pad;            // 28
+};
+
+struct MarkParams {      // 4 bytes
+    uint words;          // 0  of 32 marks each
+};
+
 // Of the kernels that scatter and shade the rays of a wave.
 struct WaveParams {      // 80 bytes
     vec3 forward;        //  0  viewing axis
@@ -386,7 +433,7 @@ struct WaveParams {      // 80 bytes
     BackgroundInfo background; // 16
     uvec2 tile_origin;   // 32  in the full image, pixels
     uvec2 tile_size;     // 40
-    uint wave;           // 48  0: rays from the camera
+    uint flags;          // 48  WAVE_*
     uint max_bounces;    // 52
     uint fresnel;        // 56  1: glass reflects or refracts at random, 0: it refracts
     uint seed;           // 60

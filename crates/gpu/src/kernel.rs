@@ -101,6 +101,22 @@ impl Kernel {
         bindings: &[(u32, Binding)],
         push_bytes: usize,
     ) -> Result<Self, GpuError> {
+        Self::specialized(device, name, spirv, bindings, push_bytes, None)
+    }
+
+    /// The same with a value for the module's specialization constant 0, an integer of 32 bits. Code that it
+    /// rules out is not compiled. Without a value, the module's own counts.
+    ///
+    /// # Panics
+    /// As [`Kernel::new`].
+    pub fn specialized(
+        device: &Arc<Device>,
+        name: &'static str,
+        spirv: &[u32],
+        bindings: &[(u32, Binding)],
+        push_bytes: usize,
+        constant: Option<u32>,
+    ) -> Result<Self, GpuError> {
         assert!(push_bytes.is_multiple_of(4), "kernel '{name}': {push_bytes} push constant bytes");
         let module =
             Module::read(spirv).map_err(|reason| GpuError::BadModule { kernel: name, reason })?;
@@ -113,6 +129,7 @@ impl Kernel {
             entry: module.entry,
             bindings: bindings.to_vec(),
             push_bytes,
+            constant,
         };
         let inner = KernelInner {
             pipeline: OnceLock::new(),

@@ -164,8 +164,6 @@ constants! {
     STATE_OUT = 4;
     /// Binding of the tracing kernels: [`GridInfo`].
     TRACE_INFO = 8;
-    /// Binding of `disc_trace`: ranks of the points of the screen tiles.
-    TRACE_KEYS = 8;
     /// Binding of `grid_trace`: range of each cell; of `disc_trace`: of each screen tile.
     TRACE_CELLS = 9;
     /// Binding of `grid_trace`: points of the cells; of `disc_trace`: of the screen tiles.
@@ -252,6 +250,38 @@ constants! {
     MARCH_LIGHT = 42;
     /// Binding of `point_lights` and `march_lit`: what of each light's reaches each point of a volume.
     MARCH_VISIBLE = 43;
+    /// Binding of `camera_trace` and `disc_trace`: first and past-the-last entry of each screen tile.
+    DISC_RANGES_IN = 44;
+    /// Binding of `camera_trace` and `disc_trace`: front to back within a screen tile.
+    DISC_KEYS_IN = 45;
+    /// Binding of `camera_trace` and `disc_trace`: points of the screen tiles.
+    DISC_SLOTS_IN = 46;
+    /// Binding of the kernels of a wave: [`LitHit`] by ray.
+    WAVE_LIT_HITS = 47;
+    /// Binding of `camera_trace`, `count_marked` and `list_marked`: a bit a ray.
+    WAVE_MARKS = 48;
+    /// [`WaveParams::flags`]: rays come from the camera.
+    WAVE_FROM_CAMERA = 1;
+    /// [`WaveParams::flags`]: all rays have the camera's path, but for the pixel.
+    WAVE_SHARES_PATH = 2;
+    /// Of the constant that kernels are specialized by: rays that hit nothing see an image.
+    SCENE_ENVIRONMENT = 1;
+    /// Normals of an object are blended.
+    SCENE_BLENDS = 2;
+    /// There is light, and `shade` writes the colours of diffuse hits.
+    SCENE_LIGHTS = 4;
+    /// What each channel lets through is written.
+    SCENE_ALPHA = 8;
+    /// Cells crossed, points hit and iterations are written.
+    SCENE_DIAGNOSTICS = 16;
+    /// Points of an object have colours, or places in a texture.
+    SCENE_VALUES = 32;
+    /// An object has a texture.
+    SCENE_TEXTURES = 64;
+    /// A pixel has several samples.
+    SCENE_SAMPLES = 128;
+    /// Hits of an object are refined.
+    SCENE_REFINES = 256;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
     VOLUME_SHEPARD = 0;
     /// [`VolumeInfo::kernel`] of the weighted sum.
@@ -728,6 +758,66 @@ pub struct BackgroundInfo {
 }
 gpu_layout!(BackgroundInfo, 16, { color: 0, environment: 12 });
 
+/// Push constants of `camera_trace`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct CameraTraceParams {
+    /// As in [`CameraParams`], as are the next six.
+    pub eye: [f32; 3],
+    /// Half the view's height over half the rows.
+    pub scale: f32,
+    /// Unit vector.
+    pub right: [f32; 3],
+    /// Of the full image, in pixels.
+    pub half_width: f32,
+    /// Unit vector.
+    pub up: [f32; 3],
+    /// Of the full image, in pixels.
+    pub half_height: f32,
+    /// Unit vector of the viewing axis.
+    pub forward: [f32; 3],
+    /// Loop iterations a ray may spend.
+    pub work: u32,
+    /// The tile's first pixel in the full image.
+    pub tile_origin: [u32; 2],
+    /// Columns and rows of the tile.
+    pub tile_size: [u32; 2],
+    /// What rays that hit nothing see.
+    pub background: BackgroundInfo,
+    /// How pairs of a screen tile are ordered.
+    pub ranks: DepthRanks,
+    /// What leaves the background out: one of `TRANSPARENT_*`, or 0 for nothing.
+    pub transparent: u32,
+}
+gpu_layout!(CameraTraceParams, 116, {
+    eye: 0, scale: 12, right: 16, half_width: 28, up: 32, half_height: 44, forward: 48, work: 60,
+    tile_origin: 64, tile_size: 72, background: 80, ranks: 96, transparent: 112,
+});
+
+/// A hit on a diffuse surface, where light is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct LitHit {
+    /// Centred scene space.
+    pub position: [f32; 3],
+    /// The point hit.
+    pub slot: u32,
+    /// Unit normal facing the ray's origin.
+    pub normal: [f32; 3],
+    /// Unused.
+    pub pad: u32,
+}
+gpu_layout!(LitHit, 32, { position: 0, slot: 12, normal: 16, pad: 28 });
+
+/// Push constants of `count_marked` and `list_marked`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct MarkParams {
+    /// Words of 32 marks each.
+    pub words: u32,
+}
+gpu_layout!(MarkParams, 4, { words: 0 });
+
 /// Push constants of the kernels that scatter and shade the rays of a wave.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -742,8 +832,8 @@ pub struct WaveParams {
     pub tile_origin: [u32; 2],
     /// Columns and rows of the tile.
     pub tile_size: [u32; 2],
-    /// 0: rays from the camera.
-    pub wave: u32,
+    /// `WAVE_*`.
+    pub flags: u32,
     /// Interactions after the primary hit.
     pub max_bounces: u32,
     /// 1: glass reflects or refracts at random; 0: it refracts.
@@ -760,7 +850,7 @@ pub struct WaveParams {
     pub transparent: u32,
 }
 gpu_layout!(WaveParams, 80, {
-    forward: 0, ray_count: 12, background: 16, tile_origin: 32, tile_size: 40, wave: 48,
+    forward: 0, ray_count: 12, background: 16, tile_origin: 32, tile_size: 40, flags: 48,
     max_bounces: 52, fresnel: 56, seed: 60, light: 64, light_count: 68, sample_index: 72,
     transparent: 76,
 });
@@ -1190,6 +1280,9 @@ pub const STRUCTS: &[StructLayout] = &[
     DepthRanks::LAYOUT,
     DiscParams::LAYOUT,
     DiscTraceParams::LAYOUT,
+    CameraTraceParams::LAYOUT,
+    LitHit::LAYOUT,
+    MarkParams::LAYOUT,
     WaveParams::LAYOUT,
     BackgroundInfo::LAYOUT,
     ImageInfo::LAYOUT,

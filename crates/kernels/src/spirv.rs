@@ -36,6 +36,8 @@ modules! {
     camera_rays,
     /// `camera_rays` for rays in a queue.
     camera_rays_queue,
+    /// The first wave from the eye to the film, where rays of a queue need none.
+    camera_trace,
     /// Where each cell's entries begin.
     cell_offsets,
     /// What becomes of each ray of a wave.
@@ -44,6 +46,8 @@ modules! {
     classify_queue,
     /// Trust balls that end at rims.
     clip_balls,
+    /// Bits set in each word of marks.
+    count_marked,
     /// Screen tiles that each disc covers.
     disc_count,
     /// Pairs of screen tile and point.
@@ -106,10 +110,10 @@ modules! {
     leaf_boxes_texels,
     /// The rays that hit a diffuse surface, one after another.
     list_lit,
-    /// `list_lit` for rays in a queue.
-    list_lit_queue,
     /// The rays of a wave that have not ended, one after another.
     list_live,
+    /// The rays that are marked, one after another.
+    list_marked,
     /// The points of each cell with their positions.
     list_points,
     /// The same, reading polynomials through a uniform texel buffer.
@@ -200,7 +204,6 @@ pub const VARIANTS: &[(&str, &str, &[&str])] = &[
     ("isosurface_shadows", "isosurface", &["SHADOWS"]),
     ("isosurface_shadows_queue", "isosurface", &["SHADOWS", "QUEUE"]),
     ("leaf_boxes_texels", "leaf_boxes", &["POINTS_AS_TEXELS"]),
-    ("list_lit_queue", "list_lit", &["QUEUE"]),
     ("list_points_texels", "list_points", &["POINTS_AS_TEXELS"]),
     ("march_lit", "march", &["LIT"]),
     ("march_lit_queue", "march", &["LIT", "QUEUE"]),

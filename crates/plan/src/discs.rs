@@ -1,7 +1,9 @@
 //! Primary rays by discs (\[T\] §4): when, and how the points of a screen tile are ordered.
 
 use crate::{Diagnostic, Plan, Primary, Window};
-use kernels::layout::{DISC_TILE, DepthRanks, DiscParams, GridInfo, PERSPECTIVE};
+use kernels::layout::{
+    CameraParams, CameraTraceParams, DISC_TILE, DepthRanks, DiscParams, GridInfo, PERSPECTIVE,
+};
 
 /// Pairs of a screen tile and a point that one tile of the picture may have. One binding holds 32
 /// million on any device; what has more is traced through the grid, which gives the same bytes.
@@ -50,6 +52,37 @@ impl Plan {
             ranks: depth_ranks(self.camera.eye, grid, screen_tiles(tile)),
             point_count: self.cloud.points.len() as u32,
             pair_count: 0,
+        }
+    }
+
+    /// Whether a camera's ray that is traced by discs goes straight to its pixel: where it meets nothing but
+    /// surfaces, that do not send it on and are taken as they are.
+    #[must_use]
+    pub fn ends_at_first_hits(&self) -> bool {
+        let meets_others = !self.volumes.infos.is_empty() || !self.camera_media.is_empty();
+        !(meets_others || self.refines() || self.scatters())
+    }
+
+    /// Parameters of `camera_trace` for one tile, whose rays may spend so much work.
+    #[must_use]
+    pub fn camera_trace_of(&self, tile: &Window, grid: &GridInfo, work: u32) -> CameraTraceParams {
+        let wave = self.wave_of(tile, 0);
+        let CameraParams { eye, scale, right, half_width, up, half_height, forward, .. } =
+            self.camera;
+        CameraTraceParams {
+            eye,
+            scale,
+            right,
+            half_width,
+            up,
+            half_height,
+            forward,
+            work,
+            tile_origin: tile.origin,
+            tile_size: tile.size,
+            background: wave.background,
+            ranks: self.discs_of(tile, grid).ranks,
+            transparent: wave.transparent,
         }
     }
 }

@@ -29,8 +29,10 @@ pub use volumes::Volumes;
 use images::{ImageList, Use};
 use kernels::layout::{
     self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, LIGHT_DIRECTIONAL,
-    LIGHT_POINT, MATERIAL_DIFFUSE, MEDIA_WORDS, NONE, ObjectInfo, TRANSPARENT_CAMERA,
-    TRANSPARENT_GLASS, WaveParams,
+    LIGHT_POINT, MATERIAL_DIFFUSE, MEDIA_WORDS, NONE, ObjectInfo, SCENE_ALPHA, SCENE_BLENDS,
+    SCENE_DIAGNOSTICS, SCENE_ENVIRONMENT, SCENE_LIGHTS, SCENE_REFINES, SCENE_SAMPLES,
+    SCENE_TEXTURES, SCENE_VALUES, TRANSPARENT_CAMERA, TRANSPARENT_GLASS, WAVE_FROM_CAMERA,
+    WaveParams,
 };
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
 use points::{Cloud, CloudError, ObjectPoints, PointSet, bounds_of};
@@ -203,7 +205,7 @@ impl Plan {
                 },
                 tile_origin: [0, 0],
                 tile_size: [0, 0],
-                wave: 0,
+                flags: WAVE_FROM_CAMERA,
                 max_bounces: scene.render.max_bounces,
                 fresnel: u32::from(scene.render.fresnel == Fresnel::Sample),
                 seed: scene.render.seed,
@@ -311,6 +313,25 @@ impl Plan {
             sample_index: self.sample_index(sample),
             ..self.wave
         }
+    }
+
+    /// `SCENE_*`: what kernels of this plan have to do.
+    #[must_use]
+    pub fn scene_bits(&self) -> u32 {
+        let any = |has: fn(&ObjectInfo) -> bool| self.objects.iter().any(has);
+        [
+            (SCENE_ENVIRONMENT, self.wave.background.environment != NONE),
+            (SCENE_BLENDS, any(|object| object.blends != 0)),
+            (SCENE_LIGHTS, !self.lights.is_empty()),
+            (SCENE_ALPHA, self.channel_alpha),
+            (SCENE_DIAGNOSTICS, !self.diagnostics.is_empty()),
+            (SCENE_VALUES, any(|object| object.first_color != NONE)),
+            (SCENE_TEXTURES, any(|object| object.texture != NONE)),
+            (SCENE_SAMPLES, self.samples > 1),
+            (SCENE_REFINES, self.refines()),
+        ]
+        .into_iter()
+        .fold(0, |bits, (bit, is_set)| if is_set { bits | bit } else { bits })
     }
 
     /// As kernels take it: the one sample of a pixel is none of a sequence.

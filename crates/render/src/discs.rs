@@ -73,7 +73,7 @@ impl Discs {
     }
 
     /// Lists the points of each screen tile of a tile of the picture; `None` where the pairs are
-    /// too many. `timed` is told what each submission cost.
+    /// too many. `timed` is told what each submission cost; the last is the caller's.
     pub fn bin(
         &mut self,
         rec: &mut Recorder,
@@ -89,7 +89,6 @@ impl Discs {
         }
         let params = DiscParams { pair_count, ..counted };
         self.list_pairs(rec, &surfaces.polynomials, &params, screen_tiles(tile))?;
-        timed(&rec.submit()?);
         Ok(self.lists.as_ref())
     }
 

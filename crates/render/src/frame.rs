@@ -8,19 +8,23 @@
 mod in_volumes;
 
 use crate::RenderError;
-use crate::budget::Budget;
+use crate::budget::{Budget, MOST};
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
-    AlbedoIo, CameraRays, CameraRaysIo, Classify, ClassifyIo, DiscTrace, DiscTraceIo, GridTrace,
-    GridTraceIo, Isosurface, ListLive, March, PointLight, Refine, RefineIo, Scatter, ScatterIo,
-    Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start, SurfaceHit, SurfaceHitIo,
+    AlbedoIo, CameraRays, CameraRaysIo, CameraTrace, CameraTraceIo, Classify, ClassifyIo,
+    DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Isosurface, ListLive, ListMarked, March,
+    PointLight, Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo,
+    Start, SurfaceHit, SurfaceHitIo,
 };
 use crate::samples::Samples;
 use crate::state::{RayLoop, RayState};
 use crate::volumes::VolumeBuffers;
 use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder, Timings};
-use kernels::layout::{FilmPixel, Hit, NONE, Polynomial, StateRay, TraceParams, WaveParams};
+use kernels::layout::{
+    FilmPixel, Hit, NONE, Polynomial, StateRay, TraceParams, WAVE_FROM_CAMERA, WAVE_SHARES_PATH,
+    WaveParams,
+};
 use plan::{Picture, Plan, Rays, Window, camera_wave};
 use points::Watch;
 use points::device::Scan;
@@ -75,7 +79,8 @@ pub struct Traversal {
 impl Traversal {
     /// Adds what the traversal among these passes took.
     fn add(&mut self, traced: Traced, passes: &[(&'static str, f64)]) {
-        let traversal = |pass: &&(&str, f64)| [GridTrace::NAME, DiscTrace::NAME].contains(&pass.0);
+        let names = [GridTrace::NAME, DiscTrace::NAME, CameraTrace::NAME];
+        let traversal = |pass: &&(&str, f64)| names.contains(&pass.0);
         let milliseconds: f64 = passes.iter().filter(traversal).map(|pass| pass.1).sum();
         match traced {
             Traced::ByDiscs(_) | Traced::Camera => self.camera += milliseconds,
@@ -114,8 +119,11 @@ pub struct Renderer {
     wave: WaveBuffers,
     volumes: Option<VolumeBuffers>,
     state: RayState,
+    form: RayLoop,
     shadows: RayState,
     discs: Discs,
+    /// Whether no ray of `camera_trace` has needed more work than it may spend.
+    ends_at_once: bool,
     passes: Passes,
     recorder: Recorder,
     budget: Budget,
@@ -125,6 +133,7 @@ pub struct Renderer {
 /// The pipelines of a frame.
 struct Passes {
     camera_rays: CameraRays,
+    camera_trace: CameraTrace,
     disc_trace: DiscTrace,
     grid_trace: GridTrace,
     surface_hit: SurfaceHit,
@@ -137,25 +146,33 @@ struct Passes {
     isosurface: Isosurface,
     point_light: PointLight,
     list_live: ListLive,
+    list_marked: ListMarked,
     scan: Scan,
 }
 
 impl Passes {
-    fn new(device: &Arc<Device>, rays: u32, form: RayLoop) -> Result<Self, RenderError> {
+    fn new(
+        device: &Arc<Device>,
+        rays: u32,
+        form: RayLoop,
+        scene: u32,
+    ) -> Result<Self, RenderError> {
         Ok(Self {
             camera_rays: CameraRays::new(device, form)?,
+            camera_trace: CameraTrace::new(device, scene)?,
             disc_trace: DiscTrace::new(device, form)?,
             grid_trace: GridTrace::new(device, form)?,
-            surface_hit: SurfaceHit::new(device, form)?,
+            surface_hit: SurfaceHit::new(device, form, scene)?,
             refine: Refine::new(device, form)?,
-            classify: Classify::new(device, form)?,
-            shadow_rays: ShadowRays::new(device, form)?,
-            shade: Shade::new(device, form)?,
-            scatter: Scatter::new(device, form)?,
+            classify: Classify::new(device, form, scene)?,
+            shadow_rays: ShadowRays::new(device, form, scene)?,
+            shade: Shade::new(device, form, scene)?,
+            scatter: Scatter::new(device, form, scene)?,
             march: March::new(device, form)?,
             isosurface: Isosurface::new(device, form)?,
             point_light: PointLight::new(device, form)?,
             list_live: ListLive::new(device, rays, form)?,
+            list_marked: ListMarked::new(device, rays)?,
             scan: Scan::new(device)?,
         })
     }
@@ -221,9 +238,11 @@ impl Renderer {
             wave: WaveBuffers::new(device, rays, plan.scatters())?,
             volumes: VolumeBuffers::new(device, &plan.volumes, rays)?,
             state: RayState::new(device, rays, form, plan.scatters())?,
+            form,
             shadows: RayState::new(device, shadows, form, false)?,
+            ends_at_once: true,
             discs: Discs::new(device, plan.cloud.points.len() as u32)?,
-            passes: Passes::new(device, rays, form)?,
+            passes: Passes::new(device, rays, form, plan.scene_bits())?,
             recorder: Recorder::new(device)?,
             budget: Budget::of(device.info()),
             device: Arc::clone(device),
@@ -296,11 +315,13 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         let mut params = plan.wave_of(tile, sample);
         self.recorder.fill(self.wave.tally(), 0, self.wave.tally().bytes(), 0);
-        self.start_rays(plan, tile, sample);
-        let mut traced = match self.bin_discs(plan, tile, stats)? {
-            true => Traced::ByDiscs(tile.size),
-            false => Traced::Camera,
-        };
+        let by_discs = self.bin_discs(plan, tile, stats)?;
+        if by_discs && self.trace_at_once(plan, tile, &params, stats, watch)? {
+            params.ray_count = 0;
+        } else {
+            self.start_rays(plan, tile, sample);
+        }
+        let mut traced = if by_discs { Traced::ByDiscs(tile.size) } else { Traced::Camera };
         while params.ray_count > 0 {
             self.trace_to_the_end(plan, [params.ray_count; 2], traced, stats, watch)?;
             traced = if traced == Traced::Scattered { traced } else { Traced::Camera };
@@ -310,7 +331,7 @@ impl Renderer {
             let lit = self.classify(plan, &params, stats)?;
             self.shade(plan, &WaveParams { ray_count: lit, ..params }, stats, watch)?;
             params.ray_count = self.scatter(plan, &params, stats)?;
-            params.wave += 1;
+            params.flags &= !WAVE_FROM_CAMERA;
             traced = Traced::Scattered;
         }
         self.samples.record(&mut self.recorder, &self.film, plan, tile, sample);
@@ -330,6 +351,57 @@ impl Renderer {
         };
         let params = plan.camera_of(tile, sample);
         self.passes.camera_rays.record(&mut self.recorder, io, &params);
+    }
+
+    /// The first wave in one pass, and its light, where its rays end at their first hits and within one pass's
+    /// work; whether they do.
+    fn trace_at_once(
+        &mut self,
+        plan: &Plan,
+        tile: &Window,
+        params: &WaveParams,
+        stats: &mut FrameStats,
+        watch: &dyn Watch,
+    ) -> Result<bool, RenderError> {
+        let Some(lists) = self.discs.lists() else { return Ok(false) };
+        if !(self.form == RayLoop::Queue && self.ends_at_once && plan.ends_at_first_hits()) {
+            return Ok(false);
+        }
+        let io = CameraTraceIo {
+            lists,
+            surfaces: &self.surfaces,
+            objects: &self.objects,
+            images: &self.images,
+            texels: &self.texels,
+            film: &self.film,
+            lit_hits: self.wave.lit_hits(),
+            marks: &self.passes.list_marked.marks,
+            live: &self.live,
+        };
+        let (rec, list_marked) = (&mut self.recorder, &self.passes.list_marked);
+        let is_lit = params.light_count > 0;
+        let traced = plan.camera_trace_of(tile, &self.surfaces.grid, MOST);
+        rec.fill(&self.live, 0, 4, 0);
+        if is_lit {
+            list_marked.record_none(rec, params.ray_count);
+        }
+        self.passes.camera_trace.record(rec, io, &traced);
+        if is_lit {
+            list_marked.record(rec, params.ray_count, self.wave.lit_rays());
+        }
+        let timings = rec.submit()?;
+        stats.add_kernels(&timings.passes);
+        stats.traversal.add(Traced::Camera, &timings.passes);
+        stats.passes += 1;
+        let mut left = [0];
+        self.live.read(0, &mut left)?;
+        self.ends_at_once = left == [0];
+        if self.ends_at_once && is_lit {
+            let lit = list_marked.read_count(params.ray_count)?;
+            let flags = params.flags | WAVE_SHARES_PATH;
+            self.shade(plan, &WaveParams { ray_count: lit, flags, ..*params }, stats, watch)?;
+        }
+        Ok(self.ends_at_once)
     }
 
     /// Lists the points of each screen tile, if this tile is to be traced by discs; whether it is.
@@ -506,6 +578,7 @@ impl Renderer {
             film: &self.film,
             paths: self.wave.paths(),
             lit: self.wave.lit(),
+            lit_hits: self.wave.lit_hits(),
             next: self.wave.next(),
             lit_rays: self.wave.lit_rays(),
         };
@@ -529,17 +602,21 @@ impl Renderer {
         stats: &mut FrameStats,
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
-        if params.ray_count == 0 {
+        if params.ray_count == 0 || params.light_count == 0 {
             return Ok(());
         }
+        let paths = match params.flags & WAVE_SHARES_PATH {
+            0 => self.wave.paths().clone(),
+            _ => self.camera_path.clone(),
+        };
         for light in 0..params.light_count {
             let io = ShadowRaysIo {
                 shadows: &self.shadows,
                 grid_info: &self.surfaces.grid_info,
-                hits: &self.hits,
+                lit_hits: self.wave.lit_hits(),
                 lights: &self.lights,
                 film: &self.film,
-                paths: self.wave.paths(),
+                paths: &paths,
                 lit_rays: self.wave.lit_rays(),
                 light_sums: self.wave.light_sums(),
                 tally: self.wave.tally(),
@@ -560,9 +637,9 @@ impl Renderer {
                 images: &self.images,
                 texels: &self.texels,
             },
-            hits: &self.hits,
+            lit_hits: self.wave.lit_hits(),
             film: &self.film,
-            paths: self.wave.paths(),
+            paths: &paths,
             lit_rays: self.wave.lit_rays(),
             light_sums: self.wave.light_sums(),
         };

@@ -1,7 +1,7 @@
 //! What the rays of a wave have beside their state: paths, classes, light.
 
 use gpu::{Buffer, Device, GpuError, Recorder};
-use kernels::layout::{LightSum, Path};
+use kernels::layout::{LightSum, LitHit, Path};
 use points::device::Scan;
 use std::sync::Arc;
 
@@ -15,6 +15,7 @@ pub(crate) struct WaveBuffers {
     lit: Buffer,
     next: Buffer,
     lit_rays: Buffer,
+    lit_hits: Buffer,
     light_sums: Buffer,
     tally: Buffer,
     levels: Vec<Buffer>,
@@ -33,7 +34,8 @@ impl WaveBuffers {
             ],
             lit: of("lit rays", all + 1, 4)?,
             next: of("next rays", all + 1, 4)?,
-            lit_rays: of("list of lit rays", all, 8)?,
+            lit_rays: of("list of lit rays", all, 4)?,
+            lit_hits: of("lit hits", all, size_of::<LitHit>())?,
             light_sums: of("light sums", all, size_of::<LightSum>())?,
             tally: of("tally of rays", TALLIED as u64, 4)?,
             levels: Scan::levels(device, rays + 1)?,
@@ -60,9 +62,14 @@ impl WaveBuffers {
         &self.next
     }
 
-    /// The rays that hit a diffuse surface, with the points hit.
+    /// The rays that hit a diffuse surface.
     pub fn lit_rays(&self) -> &Buffer {
         &self.lit_rays
+    }
+
+    /// Where each did, by ray.
+    pub fn lit_hits(&self) -> &Buffer {
+        &self.lit_hits
     }
 
     /// One a diffuse hit.

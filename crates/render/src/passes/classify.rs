@@ -5,7 +5,7 @@ use crate::state::{RayLoop, StoredRays, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
     SHADE_FILM, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, TRACE_HITS, TRACE_POLYNOMIALS, WAVE_LIT,
-    WAVE_LIT_RAYS, WAVE_NEXT, WAVE_PATHS, WaveParams,
+    WAVE_LIT_HITS, WAVE_LIT_RAYS, WAVE_NEXT, WAVE_PATHS, WaveParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -25,7 +25,9 @@ pub(crate) struct ClassifyIo<'a> {
     pub lit: &'a Buffer,
     /// One u32 a ray: rays of the next wave that it makes.
     pub next: &'a Buffer,
-    /// Two u32 a ray: the rays that hit a diffuse surface, and the points hit.
+    /// One `LitHit` a ray.
+    pub lit_hits: &'a Buffer,
+    /// One u32 a ray: the rays that hit a diffuse surface.
     pub lit_rays: &'a Buffer,
 }
 
@@ -39,14 +41,8 @@ impl Classify {
     pub const NAME: &'static str = "classify";
     pub const LIST_LIT: &'static str = "list_lit";
 
-    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, GpuError> {
         let params = size_of::<WaveParams>();
-        let kernel = |name, module: &[u32], buffers: &[u32], polynomials: &[(u32, Binding)]| {
-            let mut bindings = form.bindings(Touch::Reads);
-            bindings.extend(polynomials);
-            bindings.extend(buffers.iter().map(|&binding| (binding, Binding::StorageBuffer)));
-            Kernel::new(device, name, module, &bindings, params)
-        };
         let buffers = [
             TRACE_HITS,
             SHADE_OBJECTS,
@@ -55,21 +51,24 @@ impl Classify {
             SHADE_TEXELS,
             WAVE_PATHS,
             WAVE_LIT,
+            WAVE_LIT_HITS,
             WAVE_NEXT,
         ];
+        let mut bindings = form.bindings(Touch::Reads);
+        bindings.push((TRACE_POLYNOMIALS, form.read(Texel::Four)));
+        bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        let listed = [WAVE_LIT, WAVE_LIT_RAYS].map(|binding| (binding, Binding::StorageBuffer));
+        let module = form.module(spirv::classify, spirv::classify_queue);
         Ok(Self {
-            classify: kernel(
+            classify: Kernel::specialized(
+                device,
                 Self::NAME,
-                &form.module(spirv::classify, spirv::classify_queue),
-                &buffers,
-                &[(TRACE_POLYNOMIALS, form.read(Texel::Four))],
+                &module,
+                &bindings,
+                params,
+                Some(scene),
             )?,
-            list_lit: kernel(
-                Self::LIST_LIT,
-                &form.module(spirv::list_lit, spirv::list_lit_queue),
-                &[WAVE_LIT, WAVE_LIT_RAYS],
-                &[],
-            )?,
+            list_lit: Kernel::new(device, Self::LIST_LIT, &spirv::list_lit(), &listed, params)?,
         })
     }
 
@@ -85,6 +84,7 @@ impl Classify {
             .buffer(SHADE_TEXELS, io.texels)
             .buffer(WAVE_PATHS, io.paths)
             .buffer(WAVE_LIT, io.lit)
+            .buffer(WAVE_LIT_HITS, io.lit_hits)
             .buffer(WAVE_NEXT, io.next)
             .push(params)
             .dispatch(line(params.ray_count));
@@ -92,8 +92,7 @@ impl Classify {
 
     /// Records the list of rays that hit a diffuse surface; `lit` holds offsets by now.
     pub fn record_list(&self, rec: &mut Recorder, io: ClassifyIo<'_>, params: &WaveParams) {
-        io.state
-            .bind_read(rec.pass(Self::LIST_LIT, &self.list_lit))
+        rec.pass(Self::LIST_LIT, &self.list_lit)
             .buffer(WAVE_LIT, io.lit)
             .buffer(WAVE_LIT_RAYS, io.lit_rays)
             .push(params)

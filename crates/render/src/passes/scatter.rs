@@ -37,7 +37,7 @@ pub(crate) struct Scatter {
 impl Scatter {
     pub const NAME: &'static str = "scatter";
 
-    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, GpuError> {
         let mut bindings = form.bindings(Touch::Updates);
         let buffers = [
             TRACE_INFO,
@@ -54,12 +54,13 @@ impl Scatter {
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         bindings.push((TRACE_POLYNOMIALS, form.read(Texel::Four)));
         let params = size_of::<WaveParams>();
-        let kernel = Kernel::new(
+        let kernel = Kernel::specialized(
             device,
             Self::NAME,
             &form.module(spirv::scatter, spirv::scatter_queue),
             &bindings,
             params,
+            Some(scene),
         )?;
         Ok(Self { kernel })
     }

@@ -30,18 +30,19 @@ pub(crate) struct SurfaceHit {
 impl SurfaceHit {
     pub const NAME: &'static str = "surface_hit";
 
-    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, GpuError> {
         let mut bindings = form.bindings(Touch::Reads);
         let buffers = [TRACE_INFO, TRACE_LIVE, SHADE_OBJECTS, TRACE_HITS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         bindings.extend(surface_lists(form));
         let params = size_of::<TraceParams>();
-        let kernel = Kernel::new(
+        let kernel = Kernel::specialized(
             device,
             Self::NAME,
             &form.module(spirv::surface_hit, spirv::surface_hit_queue),
             &bindings,
             params,
+            Some(scene),
         )?;
         Ok(Self { kernel })
     }
