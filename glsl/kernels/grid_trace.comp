@@ -121,9 +121,10 @@ void main() {
         // On to the next cell that holds points, once this one is exhausted.
         bool seeking = alive && next == range.y;
         while (seeking && cells_left > 0u && work_left > 0u) {
-            vec3 exits = crossings(grid, at, o, d);
+            uint around = empty_around(range);
+            vec3 exits = crossings(grid, at, around, o, d);
             bool ends = ray.hit_t <= nearest_crossing(exits);
-            at = next_cell(at, exits, d);
+            at = next_cell(grid, at, around, exits, o, d);
             alive = !ends && in_grid(grid, at);
             cell = alive ? cell_id(grid, at) : NONE;
             range = alive ? range_of(cell) : uvec2(0u);

@@ -63,6 +63,13 @@
 #define GRID_SLOTS 5
 #define GRID_CELLS 6
 #define GRID_LARGE 7
+#define SKIP_MARKS_IN 8
+#define SKIP_MARKS_OUT 9
+#define SKIP_OCCUPIED 10
+#define SKIP_BESIDE 11
+#define SKIP_NEAR 12
+#define SKIP_FAR 13
+#define MOST_SKIPPED 4 // cells from an empty one to the next that may not be: no greater distance is told apart
 
 // scan_reduce, scan_apply
 #define SCAN_VALUES 0

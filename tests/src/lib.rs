@@ -91,8 +91,8 @@ impl Bench {
         surfaces.polynomials.read(0, &mut polynomials).expect("polynomials");
         let mut cells = vec![[0u32; 2]; surfaces.grid.cell_count() as usize];
         surfaces.cells.read(0, &mut cells).expect("cells");
-        let listed = cells.iter().map(|range| range[1]).max().unwrap_or(0);
-        let mut slots = vec![0u32; listed as usize];
+        let listed = cells.iter().filter(|range| range[0] < range[1]).map(|range| range[1]).max();
+        let mut slots = vec![0u32; listed.unwrap_or(0) as usize];
         surfaces.slots.read(0, &mut slots).expect("slots");
         Rendered {
             polynomials,

@@ -130,6 +130,13 @@ constants! {
     GRID_CELLS = 6;
     /// Binding of the grid build: counts, then offsets, of large balls alone, by ordinal.
     GRID_LARGE = 7;
+    SKIP_MARKS_IN = 8;
+    SKIP_MARKS_OUT = 9;
+    SKIP_OCCUPIED = 10;
+    SKIP_BESIDE = 11;
+    SKIP_NEAR = 12;
+    SKIP_FAR = 13;
+    MOST_SKIPPED = 4;
     /// Binding of the scan: values, turned into prefix sums in place.
     SCAN_VALUES = 0;
     /// Binding of the scan: sums of runs, or what comes before each.
@@ -1259,7 +1266,6 @@ gpu_layout!(AccumulateParams, 16, { tile_size: 0, sample_index: 8, samples: 12 }
 
 /// Every struct that host and kernels share.
 pub const STRUCTS: &[StructLayout] = &[
-    Point::LAYOUT,
     ListedPoint::LAYOUT,
     Polynomial::LAYOUT,
     FitOutcome::LAYOUT,

@@ -96,6 +96,8 @@ modules! {
     grid_trace_leaving_queue,
     /// `grid_trace` for rays in a queue.
     grid_trace_queue,
+    /// Cells beside marked ones.
+    grow_marks,
     /// Where rays first meet an isosurface.
     isosurface,
     /// `isosurface` for rays in a queue.
@@ -134,6 +136,8 @@ modules! {
     mark_live,
     /// `mark_live` for rays in a queue.
     mark_live_queue,
+    /// Cells that have points.
+    mark_occupied,
     /// Boxes around boxes.
     node_boxes,
     /// What of a light's reaches the points of a volume.
@@ -168,6 +172,8 @@ modules! {
     shadow_rays,
     /// `shadow_rays` for rays in a queue.
     shadow_rays_queue,
+    /// How far empty cells are from others.
+    skip_cells,
     /// Feature sizes as means over neighbours.
     smooth_sizes,
     /// The same, reading points through a uniform texel buffer.

@@ -5,7 +5,7 @@
 
 use crate::batch::{BATCH, test_batch};
 use crate::camera_rays::Ray;
-use crate::grid::{Grid, nearest_crossing};
+use crate::grid::{Grid, empty_around, nearest_crossing};
 use crate::grid_build::CellLists;
 use crate::polynomial::Polynomial;
 use crate::real::{NO_HIT, Real};
@@ -42,9 +42,10 @@ pub fn grid_trace<R: Real>(
                 return;
             }
         }
-        let exits = grid.crossings(at, o, d);
+        let around = empty_around(lists.cells[grid.cell_id(at) as usize]);
+        let exits = grid.crossings(at, around, o, d);
         let ends = ray.hit_t <= nearest_crossing(exits);
-        next = if ends { None } else { grid.step(at, exits, d) };
+        next = if ends { None } else { grid.step(at, around, exits, o, d) };
         ray.cells += u32::from(next.is_some());
     }
     ray.cell = NONE;

@@ -9,6 +9,7 @@ mod fitting;
 mod grid_build;
 mod scan;
 mod search;
+mod skip;
 mod smooth;
 mod sort;
 mod work;
@@ -172,6 +173,7 @@ impl Surfaces {
         let point_cells = if refines { build.list_points(&mut work, &io)? } else { None };
         clip::clip_balls(device, &mut work, &polynomials, &rims.clips(&cloud.points, &outcomes))?;
         let lists = build.run(&mut work, &io)?;
+        skip::skip_cells(device, &mut work, &grid, &grid_info, &lists.cells)?;
         watch.done(1);
         Ok(Self {
             polynomials,
