@@ -94,6 +94,8 @@ constants! {
     SEARCH_LISTS = 5;
     /// Binding of the neighbour search: leaves of the batch that are looked at again.
     SEARCH_GROUPS = 6;
+    /// Binding of `find_neighbors` without ties: which leaves of the batch have some all the same.
+    SEARCH_TIES = 7;
     /// Consecutive slots that share a box, and so a list of leaves; children of a node.
     LEAF_POINTS = 8;
     /// Levels of boxes, at most.
