@@ -4,11 +4,13 @@
 //         leaves, counts   where to look, by leaf of the batch, or by listed one; NONE: nowhere
 //         groups           leaves of the batch, where some are listed
 // writes  lists            slots, nearest first, ties by place in the file
+//         ties             of UNTIED: 1 for a leaf of which any point met two others at the same distance
 // runs    one invocation per point of the batch, or of listed leaves
 // twin    points::NeighborSearch (exact neighbours are one result)
 //
 // Sixteen points are measured before any is put into its place among the nearest: one bit each. With FEW,
-// for k up to 16; else up to 64.
+// for k up to 16; else up to 64. With UNTIED, distances alone are compared: where two are equal, the list
+// is not right, and ties says so.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "layout.glsl"
@@ -24,6 +26,9 @@ WORDS(SEARCH_LEAVES, leaves); // four entries each
 layout(std430, binding = SEARCH_COUNTS) readonly buffer Counts { uint counts[]; };
 layout(std430, binding = SEARCH_LISTS) writeonly buffer Lists { uint lists[]; };
 layout(std430, binding = SEARCH_GROUPS) readonly buffer Groups { uint groups[]; };
+#ifdef UNTIED
+layout(std430, binding = SEARCH_TIES) writeonly buffer Ties { uint ties[]; };
+#endif
 layout(push_constant) uniform Push { SearchParams params; };
 
 #define LEAF_MASK ((1u << LEAF_BITS) - 1u)
@@ -70,10 +75,16 @@ void main() {
 
     uint unused = NEAREST - params.neighbors;
     float d[NEAREST];
-    uint index[NEAREST];
     uint found[NEAREST];
-#define FIRST(j) d[j] = j < unused ? -1.0 : NO_HIT; index[j] = NONE; found[j] = NONE;
+#define FIRST(j) d[j] = j < unused ? -1.0 : NO_HIT; found[j] = NONE;
     EACH(FIRST)
+#ifdef UNTIED
+    bool tied = false;
+#else
+    uint index[NEAREST];
+#define FIRST_INDEX(j) index[j] = NONE;
+    EACH(FIRST_INDEX)
+#endif
     float bound = bounds[i];
     Key last = Key(bound, NONE);
 
@@ -106,8 +117,26 @@ void main() {
                 uint other = (j < LEAF_POINTS ? slot_a : slot_b) + j % LEAF_POINTS;
                 uvec4 point = words_of(points, other);
                 float square = square_of(uintBitsToFloat(point.xyz) - center);
+                bool counts = other != slot && other < end;
+#ifdef UNTIED
+                counts = counts && square <= last.square;
+                square = counts ? square : NO_HIT;
+                bool sinks = square < d[NEAREST - 1u];
+                tied = tied || (counts && square == d[NEAREST - 1u]);
+#define SINK(j) { \
+    bool passes = square < d[(j) - 1u]; \
+    tied = tied || (counts && square == d[(j) - 1u]); \
+    found[j] = sinks ? (passes ? found[(j) - 1u] : other) : found[j]; \
+    d[j] = min(d[j], max(d[(j) - 1u], square)); \
+    sinks = passes; \
+}
+                EACH_BUT_FIRST_BACKWARDS(SINK)
+                d[0] = sinks ? square : d[0];
+                found[0] = sinks ? other : found[0];
+                last.square = min(bound, d[NEAREST - 1u]);
+#else
                 Key key = Key(square, point.w);
-                bool counts = before(key, last) && other != slot && other < end;
+                counts = counts && before(key, last);
                 key.square = counts ? square : NO_HIT;
                 key.index = counts ? point.w : NONE;
                 bool sinks = before(key, Key(d[NEAREST - 1u], index[NEAREST - 1u]));
@@ -125,6 +154,7 @@ void main() {
                 bool full = d[NEAREST - 1u] <= bound;
                 last.square = full ? d[NEAREST - 1u] : bound;
                 last.index = full ? index[NEAREST - 1u] : NONE;
+#endif
             }
         }
         done += 32u;
@@ -132,4 +162,7 @@ void main() {
     uint at = i * params.stride;
 #define KEEP(j) if (j >= unused) lists[at + j - unused] = found[j];
     EACH(KEEP)
+#ifdef UNTIED
+    if (tied) ties[i / LEAF_POINTS] = 1u;
+#endif
 }

@@ -2,8 +2,7 @@
 //
 // reads   points, nodes
 //         bounds           d2 within which each point of the batch has k others
-// writes  bounds           the same, where a point beside it has a better one
-//         leaves           which; in the bits above LEAF_BITS, for which of the points
+// writes  leaves           which; in the bits above LEAF_BITS, for which of the points
 //         counts           how many; NONE where they were too many, or the search too long
 //         groups           leaves of the batch, where some are listed
 // runs    one invocation per leaf of the batch, or per listed one; lists and counts lie in that order
@@ -20,7 +19,7 @@
 layout(local_size_x = LINE_GROUP) in;
 WORDS(SEARCH_POINTS, points);
 WORDS(SEARCH_NODES, nodes); // two a box
-layout(std430, binding = SEARCH_BOUNDS) buffer Bounds { float bounds[]; };
+layout(std430, binding = SEARCH_BOUNDS) readonly buffer Bounds { float bounds[]; };
 layout(std430, binding = SEARCH_LEAVES) writeonly buffer Leaves { uint leaves[]; };
 layout(std430, binding = SEARCH_COUNTS) writeonly buffer Counts { uint counts[]; };
 layout(std430, binding = SEARCH_GROUPS) readonly buffer Groups { uint groups[]; };
@@ -32,28 +31,6 @@ vec4 ball(uint i) {
     uint at = is_there ? i : 0u;
     vec3 center = uintBitsToFloat(words_of(points, params.first_slot + params.batch_first + at).xyz);
     return vec4(center, is_there ? bounds[at] : -1.0);
-}
-
-#define NO_REACH 1e18   // of balls that say nothing about others
-#define MARGIN 1.00001  // more than the roundings between a distance and its square
-
-float reach_of(vec4 ball) {
-    return ball.w >= 0.0 && ball.w < NO_REACH * NO_REACH ? sqrt(ball.w) : NO_REACH;
-}
-
-// Where a point has k others within r, another has as many within r and the way between the two.
-void relax(inout float a, inout float b, vec3 way, float reach_a, float reach_b) {
-    float apart = sqrt(square_of(way));
-    a = min(a, apart + reach_b);
-    b = min(b, apart + reach_a);
-}
-
-vec4 relaxed(vec4 ball, float reach) {
-    return vec4(ball.xyz, ball.w < 0.0 ? ball.w : min(ball.w, reach * reach * MARGIN + 1e-37));
-}
-
-void keep_bound(uint i, vec4 ball) {
-    if (i < params.batch_count) bounds[i] = ball.w;
 }
 
 uint touches(vec4 ball, vec3 low, vec3 high, uint bit) {
@@ -68,18 +45,6 @@ void main() {
     if (i >= params.batch_count) return;
     vec4 b0 = ball(i), b1 = ball(i + 1u), b2 = ball(i + 2u), b3 = ball(i + 3u);
     vec4 b4 = ball(i + 4u), b5 = ball(i + 5u), b6 = ball(i + 6u), b7 = ball(i + 7u);
-    float s0 = reach_of(b0), s1 = reach_of(b1), s2 = reach_of(b2), s3 = reach_of(b3);
-    float s4 = reach_of(b4), s5 = reach_of(b5), s6 = reach_of(b6), s7 = reach_of(b7);
-    float r0 = s0, r1 = s1, r2 = s2, r3 = s3, r4 = s4, r5 = s5, r6 = s6, r7 = s7;
-#define RELAX(i, j) relax(r##i, r##j, b##i.xyz - b##j.xyz, s##i, s##j);
-    RELAX(0, 1) RELAX(0, 2) RELAX(0, 3) RELAX(0, 4) RELAX(0, 5) RELAX(0, 6) RELAX(0, 7)
-    RELAX(1, 2) RELAX(1, 3) RELAX(1, 4) RELAX(1, 5) RELAX(1, 6) RELAX(1, 7)
-    RELAX(2, 3) RELAX(2, 4) RELAX(2, 5) RELAX(2, 6) RELAX(2, 7)
-    RELAX(3, 4) RELAX(3, 5) RELAX(3, 6) RELAX(3, 7)
-    RELAX(4, 5) RELAX(4, 6) RELAX(4, 7) RELAX(5, 6) RELAX(5, 7) RELAX(6, 7)
-#define TAKE(j) b##j = relaxed(b##j, r##j); keep_bound(i + uint(j), b##j);
-    TAKE(0) TAKE(1) TAKE(2) TAKE(3) TAKE(4) TAKE(5) TAKE(6) TAKE(7)
-
     uint list = nth * params.capacity;
     uint count = 0u;
     uint steps = 0u;

@@ -31,8 +31,10 @@ void main() {
     bool is_large = box.count > SMALL_BALL;
     uint count = is_large ? box.count : 0u;
     uint nth = is_large ? box.count : 0u;
+    uvec3 cell = box.low;
     while (nth < box.count) {
-        count += meets(grid, cell_of_box(box, nth), ball.xyz, radius) ? 1u : 0u;
+        count += meets(grid, cell, ball.xyz, radius) ? 1u : 0u;
+        cell = next_in_box(box, cell);
         ++nth;
     }
     offsets[ordinal] = count;

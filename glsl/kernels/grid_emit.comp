@@ -34,13 +34,14 @@ void main() {
     uint end = box.count > SMALL_BALL ? 0u : box.count;
     uint pair = offsets[ordinal];
     uint nth = 0u;
+    uvec3 cell = box.low;
     while (nth < end) {
-        uvec3 cell = cell_of_box(box, nth);
         if (meets(grid, cell, ball.xyz, radius)) {
             keys[pair] = cell_in_slab(grid, params, cell);
             slots[pair] = slot;
             ++pair;
         }
+        cell = next_in_box(box, cell);
         ++nth;
     }
 }

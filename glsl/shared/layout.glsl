@@ -39,6 +39,7 @@
 #define SEARCH_COUNTS 4
 #define SEARCH_LISTS 5
 #define SEARCH_GROUPS 6
+#define SEARCH_TIES 7
 #define LEAF_POINTS 8 // consecutive slots that share a box, and so a list of leaves; children of a node
 #define LEAF_LEVELS 10 // of boxes, at most
 #define LEAF_BITS 24 // of an entry in a list of leaves: the leaf; the others: which of LEAF_POINTS it is for

@@ -29,6 +29,16 @@ uvec3 cell_of_box(CellBox box, uint nth) {
     return box.low + uvec3(nth % box.extent.x, row % box.extent.y, row / box.extent.y);
 }
 
+// The cell that comes after this one; behind the last, any. Without the divisions above: a lane at a time, they
+// took half of the time that a grid took to list.
+uvec3 next_in_box(CellBox box, uvec3 cell) {
+    uint x = cell.x + 1u;
+    bool row_ends = x == box.low.x + box.extent.x;
+    uint y = cell.y + (row_ends ? 1u : 0u);
+    bool layer_ends = y == box.low.y + box.extent.y;
+    return uvec3(row_ends ? box.low.x : x, layer_ends ? box.low.y : y, cell.z + (layer_ends ? 1u : 0u));
+}
+
 // Points alone are in the one cell around them.
 bool meets(GridInfo grid, uvec3 cell, vec3 center, float radius) {
     return radius == 0.0 || ball_meets_cell(grid, cell, center, radius);

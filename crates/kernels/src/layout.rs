@@ -94,6 +94,8 @@ constants! {
     SEARCH_LISTS = 5;
     /// Binding of the neighbour search: leaves of the batch that are looked at again.
     SEARCH_GROUPS = 6;
+    /// Binding of `find_neighbors` without ties: which leaves of the batch have some all the same.
+    SEARCH_TIES = 7;
     /// Consecutive slots that share a box, and so a list of leaves; children of a node.
     LEAF_POINTS = 8;
     /// Levels of boxes, at most.
@@ -130,12 +132,19 @@ constants! {
     GRID_CELLS = 6;
     /// Binding of the grid build: counts, then offsets, of large balls alone, by ordinal.
     GRID_LARGE = 7;
+    /// Binding of `grow_marks`: cells that are marked, 32 of a row a word.
     SKIP_MARKS_IN = 8;
+    /// Binding of `mark_occupied` and `grow_marks`: the cells that they mark.
     SKIP_MARKS_OUT = 9;
+    /// Binding of `skip_cells`: cells with points.
     SKIP_OCCUPIED = 10;
+    /// Binding of `skip_cells`: those at most one cell from these.
     SKIP_BESIDE = 11;
+    /// Binding of `skip_cells`: at most two.
     SKIP_NEAR = 12;
+    /// Binding of `skip_cells`: at most three.
     SKIP_FAR = 13;
+    /// Cells from an empty one to the next that may not be: no greater distance is told apart.
     MOST_SKIPPED = 4;
     /// Binding of the scan: values, turned into prefix sums in place.
     SCAN_VALUES = 0;

@@ -64,6 +64,8 @@ modules! {
     find_neighbors_texels,
     /// `find_neighbors_texels` for up to 16.
     find_neighbors_texels_few,
+    /// `find_neighbors_texels_few` where no two others are equally far.
+    find_neighbors_untied,
     /// The local polynomial of each point.
     fit_polynomials,
     /// The same, reading points through a uniform texel buffer.
@@ -197,6 +199,7 @@ pub const VARIANTS: &[(&str, &str, &[&str])] = &[
     ("disc_trace_queue", "disc_trace", &["QUEUE"]),
     ("find_neighbors_texels", "find_neighbors", &["POINTS_AS_TEXELS"]),
     ("find_neighbors_texels_few", "find_neighbors", &["POINTS_AS_TEXELS", "FEW"]),
+    ("find_neighbors_untied", "find_neighbors", &["POINTS_AS_TEXELS", "FEW", "UNTIED"]),
     ("fit_polynomials_texels", "fit_polynomials", &["POINTS_AS_TEXELS"]),
     ("fit_polynomials_texels_few", "fit_polynomials", &["POINTS_AS_TEXELS", "FEW"]),
     ("gather_leaves_texels", "gather_leaves", &["POINTS_AS_TEXELS"]),

@@ -85,11 +85,11 @@ pub fn nearest_others(
     for object in cloud.objects.iter().filter(|object| object.count > 0) {
         let own = &cloud.points[object.range()];
         let boxes = search.record_boxes(&mut recorder, &points, *object, k)?;
-        let space = search.space(object.count.min(BATCH), k)?;
+        let mut space = search.space(object.count.min(BATCH), k)?;
         for first in (0..object.count).step_by(BATCH as usize) {
             let batch = [first, BATCH.min(object.count - first)];
             let host = (own, &mut None);
-            on_host += search.find(&mut recorder, &points, &boxes, &space, batch, host)?;
+            on_host += search.find(&mut recorder, &points, &boxes, &mut space, batch, host)?;
             let mut lists = vec![0; (batch[1] * space.stride()) as usize];
             space.lists.read(0, &mut lists)?;
             all.extend(lists.chunks(space.stride() as usize).flat_map(|list| &list[..k as usize]));
@@ -130,7 +130,7 @@ impl Fitting {
         let mut on_host: Option<NeighborSearch<'_>> = None;
         let (search, k) = (&self.search, fit.neighbors);
         let boxes = search.record_boxes(rec, &self.points, object, k)?;
-        let space = search.space(object.count.min(BATCH), k)?;
+        let mut space = search.space(object.count.min(BATCH), k)?;
         let rounds = if is_smoothed(fit) { 0..2 } else { 1..2 };
         for round in rounds {
             for first in (0..object.count).step_by(BATCH as usize) {
@@ -141,7 +141,7 @@ impl Fitting {
                     (object.first_slot + first, [first, BATCH.min(object.count - first)]);
                 let host = (own, &mut on_host);
                 self.searched_on_host +=
-                    self.search.find(rec, &self.points, &boxes, &space, batch, host)?;
+                    self.search.find(rec, &self.points, &boxes, &mut space, batch, host)?;
                 if is_smoothed(fit) {
                     let round = [first_slot, batch[1], round];
                     self.smooth.record(rec, &self.points, &space, &self.sizes, round);

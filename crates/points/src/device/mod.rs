@@ -205,3 +205,21 @@ impl Surfaces {
 pub fn line(count: u32) -> [u32; 3] {
     [count.min(LINE_ROW), count.div_ceil(LINE_ROW), 1]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_points_than_memory_are_refused_with_how_many_would_fit() {
+        let heap = 2 << 30;
+        assert!(Memory::of(0, true).require(0).is_ok());
+        assert!(Memory::of(10_000_000, false).require(heap).is_ok());
+        let Err(error) = Memory::of(100_000_000, false).require(heap) else {
+            unreachable!("6.4 GB of polynomials alone")
+        };
+        let BuildError::Memory { fitting, .. } = error else { unreachable!("{error}") };
+        assert!(Memory::of(fitting, false).require(heap).is_ok());
+        assert!(Memory::of(fitting + fitting / 50, false).require(heap).is_err());
+    }
+}

@@ -18,12 +18,16 @@ use crate::{NeighborSearch, SlotRange};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Texel};
 use kernels::layout::{
     LEAF_LEVELS, LEAF_POINTS, LevelParams, NONE, Point, SEARCH_BOUNDS, SEARCH_COUNTS,
-    SEARCH_GROUPS, SEARCH_LEAVES, SEARCH_LISTS, SEARCH_NODES, SEARCH_POINTS, SearchNode,
-    SearchParams,
+    SEARCH_GROUPS, SEARCH_LEAVES, SEARCH_LISTS, SEARCH_NODES, SEARCH_POINTS, SEARCH_TIES,
+    SearchNode, SearchParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
 
+/// Label and row of the timing table.
+const FIND: &str = "find_neighbors";
+/// Of so many leaves with ties one, and all are taken to have some: lattices and terrains.
+const TIED_SHARE: usize = 16;
 /// Neighbours that the smaller kernels find, at most.
 const FEW: u32 = 16;
 /// Leaves that a leaf's points may touch, for every 16 neighbours.
@@ -43,6 +47,8 @@ pub(crate) struct Search {
     bound: [Kernel; 2],
     gather: Kernel,
     find: [Kernel; 2],
+    /// The first of these where no two others are equally far; texels alone.
+    find_untied: Option<Kernel>,
 }
 
 /// The boxes around one object's points.
@@ -64,6 +70,10 @@ pub(crate) struct SearchSpace {
     large_leaves: Buffer,
     large_counts: Buffer,
     groups: Buffer,
+    /// A word a leaf.
+    ties: Buffer,
+    /// Whether ties were found to be the rule.
+    tied: bool,
     /// Slots, `stride` a point, nearest first, `NONE` behind the last.
     pub lists: Buffer,
 }
@@ -81,17 +91,18 @@ impl Search {
             let bindings = [(SEARCH_POINTS, read), storage(SEARCH_BOUNDS)];
             kernel("bound_reach", module, &bindings, size_of::<SearchParams>())
         };
-        let find = |module: &[u32]| {
-            let bindings = [
-                (SEARCH_POINTS, read),
-                (SEARCH_LEAVES, read),
-                storage(SEARCH_BOUNDS),
-                storage(SEARCH_COUNTS),
-                storage(SEARCH_LISTS),
-                storage(SEARCH_GROUPS),
-            ];
-            kernel("find_neighbors", module, &bindings, size_of::<SearchParams>())
-        };
+        let finding = [
+            (SEARCH_POINTS, read),
+            (SEARCH_LEAVES, read),
+            storage(SEARCH_BOUNDS),
+            storage(SEARCH_COUNTS),
+            storage(SEARCH_LISTS),
+            storage(SEARCH_GROUPS),
+            storage(SEARCH_TIES),
+        ];
+        let params = size_of::<SearchParams>();
+        let find = |module: &[u32]| kernel(FIND, module, &finding[..6], params);
+        let untied = |module: &[u32]| kernel(FIND, module, &finding, params);
         let boxes = [(SEARCH_POINTS, read), storage(SEARCH_NODES)];
         let gather = [
             (SEARCH_POINTS, read),
@@ -125,6 +136,10 @@ impl Search {
             bound: [bound(&bounds[0])?, bound(&bounds[1])?],
             gather: kernel("gather_leaves", &gathers, &gather, size_of::<SearchParams>())?,
             find: [find(&finds[0])?, find(&finds[1])?],
+            find_untied: match texels {
+                true => Some(untied(&spirv::find_neighbors_untied())?),
+                false => None,
+            },
         })
     }
 
@@ -193,6 +208,8 @@ impl Search {
                 u64::from(groups.min(LARGE_GROUPS)) * u64::from(LARGE_CAPACITY),
             )?,
             large_counts: words("large leaf counts", u64::from(LARGE_GROUPS))?,
+            ties: words("leaves with ties", u64::from(groups))?,
+            tied: false,
             groups: words("large leaves", u64::from(LARGE_GROUPS))?,
             lists: words("neighbors", u64::from(points) * u64::from(stride))?,
         })
@@ -205,7 +222,7 @@ impl Search {
         rec: &mut Work,
         points: &Buffer,
         boxes: &Boxes,
-        space: &SearchSpace,
+        space: &mut SearchSpace,
         [first, count]: [u32; 2],
         (own, on_host): (&'a [Point], &mut Option<NeighborSearch<'a>>),
     ) -> Result<u64, GpuError> {
@@ -230,10 +247,39 @@ impl Search {
             .buffer(SEARCH_BOUNDS, &space.bounds)
             .push(&params)
             .dispatch(line(count));
+        let groups = count.div_ceil(LEAF_POINTS);
         let all = [&space.leaves, &space.counts];
-        self.record_lists(rec, points, boxes, space, all, &params);
+        self.record_gather(rec, points, boxes, space, all, &params);
+        let untied = self.find_untied.as_ref().filter(|_| space.neighbors <= FEW && !space.tied);
+        if let Some(untied) = untied {
+            rec.fill(&space.ties, 0, u64::from(groups) * 4, 0);
+            rec.pass(FIND, untied)
+                .buffer(SEARCH_POINTS, points)
+                .buffer(SEARCH_BOUNDS, &space.bounds)
+                .buffer(SEARCH_LEAVES, &space.leaves)
+                .buffer(SEARCH_COUNTS, &space.counts)
+                .buffer(SEARCH_LISTS, &space.lists)
+                .buffer(SEARCH_GROUPS, &space.groups)
+                .buffer(SEARCH_TIES, &space.ties)
+                .push(&params)
+                .dispatch(line(count));
+        } else {
+            self.record_find(rec, points, space, all, &params);
+        }
         rec.submit()?;
-        let mut left = unfinished(&space.counts, count.div_ceil(LEAF_POINTS))?;
+        let mut left = unfinished(&space.counts, groups, NONE)?;
+        if untied.is_some() {
+            let tied = unfinished(&space.ties, groups, 1)?;
+            if tied.len() * TIED_SHARE > groups as usize {
+                space.tied = true;
+                self.record_find(rec, points, space, all, &params);
+                rec.submit()?;
+            } else {
+                left.extend(tied);
+                left.sort_unstable();
+                left.dedup();
+            }
+        }
         if left.is_empty() {
             return Ok(0);
         }
@@ -243,15 +289,16 @@ impl Search {
             let listed = groups.len() as u32;
             let params = SearchParams { listed, capacity: LARGE_CAPACITY, ..params };
             let large = [&space.large_leaves, &space.large_counts];
-            self.record_lists(rec, points, boxes, space, large, &params);
+            self.record_gather(rec, points, boxes, space, large, &params);
+            self.record_find(rec, points, space, large, &params);
             rec.submit()?;
-            let unfinished = unfinished(&space.large_counts, listed)?;
+            let unfinished = unfinished(&space.large_counts, listed, NONE)?;
             too_large.extend(unfinished.into_iter().map(|nth| groups[nth as usize]));
         }
         space.find_on_host(&too_large, own, &params, on_host)
     }
 
-    fn record_lists(
+    fn record_gather(
         &self,
         rec: &mut Work,
         points: &Buffer,
@@ -260,8 +307,6 @@ impl Search {
         [leaves, counts]: [&Buffer; 2],
         params: &SearchParams,
     ) {
-        let batch = params.batch_count;
-        let groups = if params.listed > 0 { params.listed } else { batch.div_ceil(LEAF_POINTS) };
         rec.pass("gather_leaves", &self.gather)
             .buffer(SEARCH_POINTS, points)
             .buffer(SEARCH_NODES, &boxes.nodes)
@@ -270,8 +315,18 @@ impl Search {
             .buffer(SEARCH_COUNTS, counts)
             .buffer(SEARCH_GROUPS, &space.groups)
             .push(params)
-            .dispatch(line(groups));
-        rec.pass("find_neighbors", &self.find[usize::from(space.neighbors > FEW)])
+            .dispatch(line(groups_of(params)));
+    }
+
+    fn record_find(
+        &self,
+        rec: &mut Work,
+        points: &Buffer,
+        space: &SearchSpace,
+        [leaves, counts]: [&Buffer; 2],
+        params: &SearchParams,
+    ) {
+        rec.pass(FIND, &self.find[usize::from(space.neighbors > FEW)])
             .buffer(SEARCH_POINTS, points)
             .buffer(SEARCH_BOUNDS, &space.bounds)
             .buffer(SEARCH_LEAVES, leaves)
@@ -279,15 +334,23 @@ impl Search {
             .buffer(SEARCH_LISTS, &space.lists)
             .buffer(SEARCH_GROUPS, &space.groups)
             .push(params)
-            .dispatch(line(groups * LEAF_POINTS));
+            .dispatch(line(groups_of(params) * LEAF_POINTS));
     }
 }
 
-/// Which of the first `count` lists of leaves are not whole.
-fn unfinished(counts: &Buffer, count: u32) -> Result<Vec<u32>, GpuError> {
+/// Leaves that a search looks at.
+fn groups_of(params: &SearchParams) -> u32 {
+    match params.listed {
+        0 => params.batch_count.div_ceil(LEAF_POINTS),
+        listed => listed,
+    }
+}
+
+/// Which of the first `count` words are `mark`: of counts, `NONE`, where a list of leaves is not whole.
+fn unfinished(counts: &Buffer, count: u32, mark: u32) -> Result<Vec<u32>, GpuError> {
     let mut read = vec![0u32; count as usize];
     counts.read(0, &mut read)?;
-    Ok((0..count).filter(|&nth| read[nth as usize] == NONE).collect())
+    Ok((0..count).filter(|&nth| read[nth as usize] == mark).collect())
 }
 
 impl SearchSpace {
