@@ -7,12 +7,13 @@
 // writes  the ray state    every ray, also those that are done: the images swap after this. Of listed rays
 //                          in place, theirs alone
 //         live             how many rays have not ended yet
+//         marks            one bit for each of these; must be zero before
 // runs    one invocation per ray of the wave; dispatched until no ray lives
 // twin    crates/reference/src/grid_trace.rs
 //
 // A ray keeps the nearest hit over all points it tested, whatever cell the hit lies in, and ends
 // where that hit is no farther than the exit of its cell, or where it leaves the grid. K = 1 is the
-// paper's loop. Any K gives the same bits: a pass can end after any cell, and, so that no dispatch
+// paper's loop; cells without points do not count. Any K gives the same bits: a pass can end after any cell, and, so that no dispatch
 // runs away, after any 32 points of one; cell and cursor say where to go on.
 // With LEAVES, rays start on surfaces, whose own sheet they do not meet again at once, and may end at
 // any hit: those towards lights. Light for the points of a volume passes the surface of its own object.
@@ -32,6 +33,7 @@
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
+layout(std430, binding = WAVE_MARKS) buffer Marks { uint marks[]; };
 layout(std430, binding = LIVE_RAYS) readonly buffer LiveRays { uint live_rays[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 
@@ -131,7 +133,7 @@ void main() {
             next = range.x;
             seeking = alive && range.x == range.y;
             ray.cells += alive ? 1u : 0u;
-            --cells_left;
+            cells_left -= seeking ? 0u : 1u; // of cells with points alone
             --work_left;
         }
     }
@@ -139,5 +141,8 @@ void main() {
     ray.cell = cell;
     ray.cursor = next - range.x;
     store_progress(index, ray);
-    if (alive) atomicAdd(live, 1u);
+    if (alive) {
+        atomicAdd(live, 1u);
+        atomicOr(marks[index / 32u], 1u << (index & 31u));
+    }
 }

@@ -256,9 +256,9 @@ constants! {
     MARCH_STATE = 37;
     /// Binding of `march`: 1/h by point, if any volume has particles.
     MARCH_LENGTHS = 38;
-    /// Binding of `mark_live` and `list_live`: whether each ray lives, then offsets of those.
+    /// Binding of `count_marked` and `list_marked`: marks of each word, then offsets.
     LIVE_OFFSETS = 39;
-    /// Binding of `list_live` and `grid_trace`: the rays that live.
+    /// Binding of `list_marked` and `grid_trace`: the rays that are marked; those that live.
     LIVE_RAYS = 40;
     /// Binding of `isosurface`: [`IsoSearch`] by ray.
     ISO_SEARCHES = 41;

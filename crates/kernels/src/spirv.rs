@@ -114,8 +114,6 @@ modules! {
     leaf_boxes_texels,
     /// The rays that hit a diffuse surface, one after another.
     list_lit,
-    /// The rays of a wave that have not ended, one after another.
-    list_live,
     /// The rays that are marked, one after another.
     list_marked,
     /// The points of each cell with their positions.
@@ -134,10 +132,6 @@ modules! {
     march_shadows,
     /// `march_shadows` for rays in a queue.
     march_shadows_queue,
-    /// Which rays of a wave have not ended.
-    mark_live,
-    /// `mark_live` for rays in a queue.
-    mark_live_queue,
     /// Cells that have points.
     mark_occupied,
     /// Boxes around boxes.
@@ -219,7 +213,6 @@ pub const VARIANTS: &[(&str, &str, &[&str])] = &[
     ("march_queue", "march", &["QUEUE"]),
     ("march_shadows", "march", &["SHADOWS"]),
     ("march_shadows_queue", "march", &["SHADOWS", "QUEUE"]),
-    ("mark_live_queue", "mark_live", &["QUEUE"]),
     ("point_lights_queue", "point_lights", &["QUEUE"]),
     ("point_rays_queue", "point_rays", &["QUEUE"]),
     ("refine_queue", "refine", &["QUEUE"]),

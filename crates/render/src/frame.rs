@@ -12,9 +12,9 @@ use crate::budget::{Budget, MOST};
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
     AlbedoIo, CameraRays, CameraRaysIo, CameraTrace, CameraTraceIo, Classify, ClassifyIo,
-    DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Isosurface, ListLive, ListMarked, March,
-    PointLight, Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo,
-    Start, SurfaceHit, SurfaceHitIo,
+    DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Isosurface, ListMarked, March, PointLight,
+    Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start,
+    SurfaceHit, SurfaceHitIo,
 };
 use crate::samples::Samples;
 use crate::state::{RayLoop, RayState};
@@ -36,8 +36,8 @@ use std::time::{Duration, Instant};
 const TEXELS_A_POLYNOMIAL: u64 = (size_of::<Polynomial>() / 16) as u64;
 const TEXELS_A_RAY: u64 = (size_of::<StateRay>() / 16) as u64;
 
-/// Rays are listed where no more than one of so many of the last pass lives.
-const LISTED_SHARE: u32 = 2;
+/// Rays are listed where at least one of so many of the last pass has ended.
+const ENDED_SHARE: u32 = 4;
 
 const EMPTY_PIXEL: FilmPixel = FilmPixel {
     color: [0.0; 4],
@@ -116,6 +116,7 @@ pub struct Renderer {
     samples: Samples,
     hits: Buffer,
     live: Buffer,
+    live_rays: Buffer,
     wave: WaveBuffers,
     volumes: Option<VolumeBuffers>,
     state: RayState,
@@ -145,7 +146,6 @@ struct Passes {
     march: March,
     isosurface: Isosurface,
     point_light: PointLight,
-    list_live: ListLive,
     list_marked: ListMarked,
     scan: Scan,
 }
@@ -171,7 +171,6 @@ impl Passes {
             march: March::new(device, form)?,
             isosurface: Isosurface::new(device, form)?,
             point_light: PointLight::new(device, form)?,
-            list_live: ListLive::new(device, rays, form)?,
             list_marked: ListMarked::new(device, rays)?,
             scan: Scan::new(device)?,
         })
@@ -235,6 +234,7 @@ impl Renderer {
             film: Buffer::new(device, "film", pixels * size_of::<FilmPixel>() as u64)?,
             hits: Buffer::new(device, "hits", u64::from(rays) * size_of::<Hit>() as u64)?,
             live: Buffer::new(device, "live rays", 8)?,
+            live_rays: Buffer::new(device, "list of live rays", u64::from(rays) * 4)?,
             wave: WaveBuffers::new(device, rays, plan.scatters())?,
             volumes: VolumeBuffers::new(device, &plan.volumes, rays)?,
             state: RayState::new(device, rays, form, plan.scatters())?,
@@ -438,7 +438,8 @@ impl Renderer {
         let work = self.budget.work();
         let wave = TraceParams { ray_count, cells, work, any_hit, listed: 0, passed };
         let state = if traced.to_light() { &mut self.shadows } else { &mut self.state };
-        let (surfaces, live, live_rays) = (&self.surfaces, &self.live, &self.passes.list_live.rays);
+        let (surfaces, live, live_rays) = (&self.surfaces, &self.live, &self.live_rays);
+        let list_marked = &self.passes.list_marked;
         let mut params = wave;
         while alive > 0 {
             if watch.interrupted() {
@@ -452,8 +453,8 @@ impl Renderer {
                     self.passes.disc_trace.record(&mut self.recorder, io, tile_size, &params);
                 }
                 _ => {
-                    if alive <= params.ray_count / LISTED_SHARE {
-                        self.passes.list_live.record(&mut self.recorder, &state.current, &wave);
+                    if alive < params.ray_count - params.ray_count / ENDED_SHARE {
+                        list_marked.record(&mut self.recorder, ray_count, live_rays);
                         let work = params.work;
                         params = TraceParams { ray_count: alive, listed: 1, work, ..wave };
                     }
@@ -463,7 +464,9 @@ impl Renderer {
                             Start::Surface
                         }
                     };
-                    let io = GridTraceIo { surfaces, state, live, live_rays };
+                    list_marked.record_none(&mut self.recorder, ray_count);
+                    let marks = &list_marked.marks;
+                    let io = GridTraceIo { surfaces, state, live, marks, live_rays };
                     self.passes.grid_trace.record(&mut self.recorder, io, from, &params);
                 }
             }
@@ -517,7 +520,9 @@ impl Renderer {
             }
             let (surfaces, state) = (&self.surfaces, &self.state.current);
             let (rec, hits) = (&mut self.recorder, &self.hits);
-            self.passes.refine.record_resume(rec, surfaces, state, hits, &params);
+            self.passes.list_marked.record_none(rec, ray_count);
+            let marks = &self.passes.list_marked.marks;
+            self.passes.refine.record_resume(rec, surfaces, state, hits, marks, &params);
             self.trace_to_the_end(plan, [ray_count, rejected], traced, stats, watch)?;
         }
     }

@@ -5,6 +5,7 @@ use crate::state::{RayLoop, RayState, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
     LIVE_RAYS, TRACE_CELLS, TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS, TRACE_SLOTS, TraceParams,
+    WAVE_MARKS,
 };
 use kernels::spirv;
 use points::device::Surfaces;
@@ -16,6 +17,8 @@ pub(crate) struct GridTraceIo<'a> {
     pub state: &'a RayState,
     /// One u32, zero before: how many rays have not ended.
     pub live: &'a Buffer,
+    /// One bit a ray of the wave, zero before: those.
+    pub marks: &'a Buffer,
     /// Those that have not ended, for passes over them alone.
     pub live_rays: &'a Buffer,
 }
@@ -44,7 +47,7 @@ impl GridTrace {
             form.module(spirv::grid_trace_leaving, spirv::grid_trace_leaving_queue),
         ];
         let mut bindings = form.bindings(Touch::Updates);
-        let buffers = [TRACE_INFO, TRACE_LIVE, LIVE_RAYS];
+        let buffers = [TRACE_INFO, TRACE_LIVE, LIVE_RAYS, WAVE_MARKS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         bindings.extend(surface_lists(form));
         let params = size_of::<TraceParams>();
@@ -76,6 +79,7 @@ impl GridTrace {
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
             .buffer(TRACE_LIVE, io.live)
             .buffer(LIVE_RAYS, io.live_rays)
+            .buffer(WAVE_MARKS, io.marks)
             .push(params)
             .dispatch(line(params.ray_count));
     }

@@ -5,7 +5,7 @@ use crate::state::{RayLoop, StoredRays, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
     REFINE_OFFSETS, REFINE_OUTCOMES, REFINE_POINTS, SHADE_OBJECTS, TRACE_HITS, TRACE_INFO,
-    TRACE_LIVE, TRACE_POLYNOMIALS, TraceParams,
+    TRACE_LIVE, TRACE_POLYNOMIALS, TraceParams, WAVE_MARKS,
 };
 use kernels::spirv;
 use points::device::{PointCells, Surfaces};
@@ -44,7 +44,7 @@ impl Refine {
         let module = form.module(spirv::refine, spirv::refine_queue);
         let refine = Kernel::new(device, Self::NAME, &module, &bindings, params)?;
         let mut bindings = form.bindings(Touch::Updates);
-        let buffers = [TRACE_INFO, TRACE_HITS];
+        let buffers = [TRACE_INFO, TRACE_HITS, WAVE_MARKS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         let resume = Kernel::new(
             device,
@@ -72,19 +72,21 @@ impl Refine {
             .dispatch(line(params.ray_count));
     }
 
-    /// Records the way on of rejected rays, in place.
+    /// Records the way on of rejected rays, in place; `marks` are zero before.
     pub fn record_resume(
         &self,
         rec: &mut Recorder,
         surfaces: &Surfaces,
         state: &StoredRays,
         hits: &Buffer,
+        marks: &Buffer,
         params: &TraceParams,
     ) {
         state
             .bind_in_place(rec.pass(Self::RESUME, &self.resume))
             .buffer(TRACE_INFO, &surfaces.grid_info)
             .buffer(TRACE_HITS, hits)
+            .buffer(WAVE_MARKS, marks)
             .push(params)
             .dispatch(line(params.ray_count));
     }
