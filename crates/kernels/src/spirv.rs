@@ -76,8 +76,6 @@ modules! {
     isosurface_shadows,
     /// `isosurface_shadows` for rays in a queue.
     isosurface_shadows_queue,
-    /// The rays that hit a diffuse surface, one after another.
-    list_lit,
     /// The rays of a wave that have not ended, one after another.
     list_live,
     /// The rays that are marked, one after another.
