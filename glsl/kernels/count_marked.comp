@@ -1,4 +1,4 @@
-// count_marked: how many bits of each word of marks are set.
+// count_marked: how many rays the marks of each word stand for.
 //
 // reads   marks
 // writes  offsets          one count a word; a scan turns them into offsets
@@ -17,5 +17,7 @@ layout(push_constant) uniform Push { MarkParams params; };
 void main() {
     uint word = list_index();
     if (word >= params.words) return;
-    offsets[word] = uint(bitCount(marks[word]));
+    uint stride = params.pairs + 1u;
+    uint twice = params.pairs != 0u ? marks[stride * word + 1u] : 0u;
+    offsets[word] = uint(bitCount(marks[stride * word])) + 2u * uint(bitCount(twice));
 }

@@ -40,7 +40,10 @@ layout(std430, binding = WAVE_LIT_RAYS) readonly buffer LitRays { uint lit_rays[
 layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
 #else
 layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
+
+uint media_word(uint ray, uint word) {
+    return paths[ray].media[word];
+}
 #include "media.glsl"
 #endif
 #ifdef LIT
@@ -176,7 +179,7 @@ void main() {
         march.state = 1u;
     }
 #ifndef SHADOWS
-    uint medium = paths[at].media_count > 0u ? medium_without(at, NONE) : NONE;
+    uint medium = paths[at].media_count > 0u ? medium_without(Media(at, paths[at].media_count), NONE) : NONE;
 #endif
     vec2 way = way_through(ray, path, end);
     float span = way.y - way.x;

@@ -24,13 +24,13 @@
 #include "fit.glsl"
 #include "polynomial.glsl"
 #include "state.glsl"
+#include "objects.glsl"
 #include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; uint rejected; };
-layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
 layout(std430, binding = REFINE_OFFSETS) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = REFINE_OUTCOMES) readonly buffer Outcomes { FitOutcome outcomes[]; };
@@ -135,7 +135,7 @@ vec4 neighbor(uint i, vec3 x, float inverse_h, float weight_square) {
 // none.
 Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, uvec2 slots, out uint kind) {
     float inverse_h = 1.0 / h;
-    float weight_scale = objects[object].weight_scale;
+    float weight_scale = object_at(object).weight_scale;
     float weight_square = weight_scale * weight_scale;
     float total = 0.0;
     vec3 sum = vec3(0.0), diagonal = vec3(0.0), off = vec3(0.0);
@@ -176,7 +176,7 @@ Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, uvec2 sl
     }
     bool spans_plane = values.y > COLLINEAR * values.z;
     float c[6];
-    kind = fit_coefficients(eq, spans_plane ? objects[object].polynomial : FIT_NO_SURFACE, UNKNOWNS, c);
+    kind = fit_coefficients(eq, spans_plane ? object_at(object).polynomial : FIT_NO_SURFACE, UNKNOWNS, c);
     return to_world(x, trust, h, inverse_h, n, u, v, c, object, 0u);
 }
 
@@ -188,7 +188,7 @@ void main() {
     Ray ray = load_ray(at);
     vec4 stored = center_trust_of(ray.hit_slot);
     uint object = object_of(ray.hit_slot);
-    uvec2 slots = uvec2(objects[object].first_slot, objects[object].slot_count);
+    uvec2 slots = uvec2(object_at(object).first_slot, object_at(object).slot_count);
     vec3 from_stored = hit.position - stored.xyz;
 
     float moved = outcomes[ray.hit_slot].trust - stored.w; // > 0 where the ball was clipped: from point to centre
@@ -199,7 +199,7 @@ void main() {
     uint kind;
     Polynomial p = fit_at(rows, hit.position, h, nearest.trust, object, slots, kind);
 
-    bool settled = abs(p.gradient_offset.w) <= objects[object].tolerance * h;
+    bool settled = abs(p.gradient_offset.w) <= object_at(object).tolerance * h;
     float t = settled ? hit.t : intersect(ray.origin, ray.direction, p, 0.0);
     vec3 y, normal;
     surface_at(ray.origin, ray.direction, t < NO_HIT ? t : hit.t, p, y, normal);
@@ -210,7 +210,7 @@ void main() {
     bool keeps = kind != FIT_NO_SURFACE && inside;
     uint iterations = bitfieldExtract(hit.status, HIT_STATUS_BITS, HIT_STATUS_BITS) + 1u;
     uint counted = hit.status + (1u << HIT_STATUS_BITS) + (1u << HIT_TOTAL_SHIFT) - HIT_PENDING;
-    bool last = settled || (iterations >= objects[object].max_iterations);
+    bool last = settled || (iterations >= object_at(object).max_iterations);
     uint status = keeps ? (last ? HIT_ACCEPTED : HIT_PENDING) : HIT_REJECTED;
     hits[at] = affordable ? Hit(x, t, normal, counted + status)
                           : Hit(hit.position, hit.t, hit.normal, hit.status - HIT_PENDING + HIT_ACCEPTED);

@@ -6,7 +6,7 @@
 // writes  the shadow rays' state      towards this light; none where it lies behind the surface
 //         light_sums       what the lights before this one bring, and what this one would
 //         film             counts
-//         tally            shadow rays
+//         tally            hits that send none
 // runs    one invocation per diffuse hit
 // twin    crates/reference/src/shade.rs
 #version 460
@@ -25,7 +25,7 @@ layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
 layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
-layout(std430, binding = WAVE_TALLY) buffer Tally { uint shadow_count; uint reflected_count; uint refracted_count; };
+layout(std430, binding = WAVE_TALLY) buffer Tally { uint dark_count; uint reflected_count; };
 layout(push_constant) uniform Push { WaveParams params; };
 #include "film.glsl"
 #include "gather.glsl"
@@ -53,7 +53,8 @@ void main() {
     if (arrives) {
         shadow = new_ray(hit.position, light.towards, enter_grid(grid, hit.position, light.towards), hit.slot);
         shadow.hit_t = light.distance;
-        atomicAdd(shadow_count, 1u);
+    } else {
+        atomicAdd(dark_count, 1u);
     }
     store_ray(at, shadow);
 }

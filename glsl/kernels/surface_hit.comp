@@ -3,7 +3,7 @@
 // reads   the ray state, polynomials, objects
 //         grid, cells, slots   the polynomials around a hit, where normals are blended
 // writes  hits             accepted, or pending where the object's hits are refined; a hit that stands
-//                          already is left alone; must be zero before the first time
+//                          already is left alone; zero before the first time, where hits are refined
 //         live             how many are pending
 // runs    one invocation per ray of the wave
 // twin    crates/reference/src/surface_hit.rs
@@ -19,7 +19,6 @@
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
-layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 #include "meeting.glsl"
@@ -27,15 +26,20 @@ layout(push_constant) uniform Push { TraceParams params; };
 void main() {
     uint at = list_index();
     if (at >= params.ray_count) return;
-    uint status = hits[at].status;
-    if (bitfieldExtract(status, 0, HIT_STATUS_BITS) == HIT_ACCEPTED) return;
+    uint iterations = 0u;
+    if (scene_has(SCENE_REFINES)) {
+        uint status = hits[at].status;
+        if (bitfieldExtract(status, 0, HIT_STATUS_BITS) == HIT_ACCEPTED) return;
+        iterations = status >> HIT_TOTAL_SHIFT << HIT_TOTAL_SHIFT;
+    }
     Ray ray = load_ray(at);
-    uint iterations = status >> HIT_TOTAL_SHIFT << HIT_TOTAL_SHIFT;
     if (ray.hit_slot == NONE) {
         hits[at].status = iterations | HIT_NONE;
         return;
     }
     Meeting met = meeting_of(ray);
     hits[at] = Hit(met.position, ray.hit_t, met.normal, iterations | (met.refined ? HIT_PENDING : HIT_ACCEPTED));
-    if (met.refined) atomicAdd(live, 1u);
+    if (scene_has(SCENE_REFINES)) {
+        if (met.refined) atomicAdd(live, 1u);
+    }
 }

@@ -10,11 +10,11 @@
 #include "grid.glsl"
 #include "image.glsl"
 #include "scene.glsl"
+#include "objects.glsl"
 #define LISTS
 #include "records.glsl"
 
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = SHADE_COLORS) readonly buffer Colors { float colors[]; };
 
 // Points of a cell that are asked. Two loops over so many stay under what lavapipe allows a dispatch.
@@ -60,7 +60,7 @@ vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
 
 // The albedo at x of the object at `index`, whose point at `slot` was hit.
 vec3 albedo_at(uint index, uint slot, vec3 x) {
-    ObjectInfo object = objects[index];
+    ObjectInfo object = object_at(index);
     bool has_values = scene_has(SCENE_VALUES) && object.first_color != NONE;
     bool has_texture = scene_has(SCENE_TEXTURES) && object.texture != NONE;
     vec3 value = vec3(0.0);

@@ -165,6 +165,13 @@
 #define SCENE_TEXTURES 64
 #define SCENE_SAMPLES 128   // a pixel has several
 #define SCENE_REFINES 256   // hits of an object are refined
+#define SCENE_DIFFUSE 512   // an object is diffuse
+#define SCENE_SCATTERS 1024 // one is not
+#define SCENE_NESTED 2048   // several are of glass, and rays may be inside more than one
+#define SCENE_DISPERSES 4096 // glass has indices by channel, and rays become three
+#define SCENE_ABSORBS 8192  // glass does
+#define SCENE_CHANCE 16384  // decides whether glass reflects or refracts
+#define SCENE_VOLUMES 32768 // paths carry what volumes emit
 
 // What transparent pictures leave the background out of.
 #define TRANSPARENT_CAMERA 1 // camera rays
@@ -188,6 +195,8 @@
 #define DISC_SLOTS_IN 46
 #define WAVE_LIT_HITS 47
 #define WAVE_MARKS 48
+#define WAVE_SCATTERING 49
+#define WAVE_NEXT_MARKS 50
 #define SHADE_IMAGES 30
 #define SHADE_TEXELS 31
 
@@ -406,7 +415,7 @@ struct BackgroundInfo {  // 16 bytes
     uint environment;    // 12  an image, or NONE: color counts
 };
 
-struct CameraTraceParams { // 116 bytes
+struct CameraTraceParams { // 120 bytes
     vec3 eye;            //  0  these as in CameraParams
     float scale;         // 12
     vec3 right;          // 16
@@ -420,6 +429,7 @@ struct CameraTraceParams { // 116 bytes
     BackgroundInfo background; // 80
     DepthRanks ranks;    // 96
     uint transparent;    // 112 TRANSPARENT_*, or 0: nothing leaves the background out
+    uint max_bounces;    // 116
 };
 
 // Where light is asked for.
@@ -430,8 +440,9 @@ struct LitHit {          // 32 bytes
     uint pad;            // 28
 };
 
-struct MarkParams {      // 4 bytes
+struct MarkParams {      // 8 bytes
     uint words;          // 0  of 32 marks each
+    uint pairs;          // 4  1: a word is followed by one whose marks count twice
 };
 
 // Of the kernels that scatter and shade the rays of a wave.

@@ -1,11 +1,12 @@
 // meeting: where a ray that has ended met the polynomial that it hit.
 //
 // twin  crates/reference/src/surface_hit.rs
-// Whoever includes this has `grid`, the grid's lists and the buffer `objects`.
+// Whoever includes this has `grid` and the grid's lists.
 #ifndef MEETING_GLSL
 #define MEETING_GLSL
 #include "blend.glsl"
 #include "grid.glsl"
+#include "objects.glsl"
 #include "polynomial.glsl"
 #include "records.glsl"
 #include "scene.glsl"
@@ -49,11 +50,11 @@ Meeting meeting_of(Ray ray) {
     Polynomial p = polynomial_of(ray.hit_slot);
     vec3 y, normal;
     surface_at(ray.origin, ray.direction, ray.hit_t, p, y, normal);
-    bool refined = scene_has(SCENE_REFINES) && objects[p.object].max_iterations > 0u;
+    bool refined = scene_has(SCENE_REFINES) && object_at(p.object).max_iterations > 0u;
     vec3 x = p.center_trust.xyz + y;
     vec3 blended = normal;
     if (scene_has(SCENE_BLENDS)) {
-        if (objects[p.object].blends != 0u && !refined) blended = blended_normal(x, normal, p.object);
+        if (object_at(p.object).blends != 0u && !refined) blended = blended_normal(x, normal, p.object);
     }
     normal = dot3(blended, ray.direction) < 0.0 ? blended : normal; // at an outline it may look away
     return Meeting(x, normal, p.object, refined);

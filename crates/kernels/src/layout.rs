@@ -208,9 +208,9 @@ constants! {
     WAVE_PATHS = 21;
     /// Binding of `scatter`: the [`Path`]s of the next wave.
     WAVE_NEXT_PATHS = 22;
-    /// Binding of the kernels of a wave: whether each ray hit a diffuse surface, then offsets.
+    /// Binding of the kernels of a wave: marks of the rays that hit a diffuse surface.
     WAVE_LIT = 23;
-    /// Binding of the kernels of a wave: rays of the next wave that each makes, then offsets.
+    /// Binding of `scatter`: where the rays that those of each word of marks make begin in the next wave.
     WAVE_NEXT = 24;
     /// Binding of the kernels of a wave: counts of rays, four u32.
     WAVE_TALLY = 25;
@@ -274,8 +274,12 @@ constants! {
     DISC_SLOTS_IN = 46;
     /// Binding of the kernels of a wave: [`LitHit`] by ray.
     WAVE_LIT_HITS = 47;
-    /// Binding of `camera_trace`, `count_marked` and `list_marked`: a bit a ray.
+    /// Binding of `count_marked` and `list_marked`: a bit a ray.
     WAVE_MARKS = 48;
+    /// Binding of the kernels of a wave: marks of the rays that hit what is not diffuse; of `scatter`, their list.
+    WAVE_SCATTERING = 49;
+    /// Binding of the kernels of a wave: two marks a ray, for the rays of the next wave that it makes.
+    WAVE_NEXT_MARKS = 50;
     /// [`WaveParams::flags`]: rays come from the camera.
     WAVE_FROM_CAMERA = 1;
     /// [`WaveParams::flags`]: all rays have the camera's path, but for the pixel.
@@ -298,6 +302,20 @@ constants! {
     SCENE_SAMPLES = 128;
     /// Hits of an object are refined.
     SCENE_REFINES = 256;
+    /// An object is diffuse.
+    SCENE_DIFFUSE = 512;
+    /// One is not.
+    SCENE_SCATTERS = 1024;
+    /// Several objects are of glass, and rays may be inside more than one.
+    SCENE_NESTED = 2048;
+    /// Glass has indices by channel, and rays become three.
+    SCENE_DISPERSES = 4096;
+    /// Glass absorbs.
+    SCENE_ABSORBS = 8192;
+    /// Whether glass reflects or refracts is drawn.
+    SCENE_CHANCE = 16384;
+    /// Paths carry what volumes emit.
+    SCENE_VOLUMES = 32768;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
     VOLUME_SHEPARD = 0;
     /// [`VolumeInfo::kernel`] of the weighted sum.
@@ -804,10 +822,13 @@ pub struct CameraTraceParams {
     pub ranks: DepthRanks,
     /// What leaves the background out: one of `TRANSPARENT_*`, or 0 for nothing.
     pub transparent: u32,
+    /// Interactions after the primary hit.
+    pub max_bounces: u32,
 }
-gpu_layout!(CameraTraceParams, 116, {
+gpu_layout!(CameraTraceParams, 120, {
     eye: 0, scale: 12, right: 16, half_width: 28, up: 32, half_height: 44, forward: 48, work: 60,
     tile_origin: 64, tile_size: 72, background: 80, ranks: 96, transparent: 112,
+    max_bounces: 116,
 });
 
 /// A hit on a diffuse surface, where light is asked for.
@@ -831,8 +852,10 @@ gpu_layout!(LitHit, 32, { position: 0, slot: 12, normal: 16, pad: 28 });
 pub struct MarkParams {
     /// Words of 32 marks each.
     pub words: u32,
+    /// 1: a word is followed by one whose marks count twice.
+    pub pairs: u32,
 }
-gpu_layout!(MarkParams, 4, { words: 0 });
+gpu_layout!(MarkParams, 8, { words: 0, pairs: 4 });
 
 /// Push constants of the kernels that scatter and shade the rays of a wave.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

@@ -112,8 +112,6 @@ modules! {
     leaf_boxes,
     /// The same, reading points through a uniform texel buffer.
     leaf_boxes_texels,
-    /// The rays that hit a diffuse surface, one after another.
-    list_lit,
     /// The rays that are marked, one after another.
     list_marked,
     /// The points of each cell with their positions.

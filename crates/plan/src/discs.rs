@@ -55,12 +55,11 @@ impl Plan {
         }
     }
 
-    /// Whether a camera's ray that is traced by discs goes straight to its pixel: where it meets nothing but
-    /// surfaces, that do not send it on and are taken as they are.
+    /// Whether the first wave of a tile that is traced by discs may be one pass: where its rays meet nothing but
+    /// surfaces, which are taken as they are.
     #[must_use]
-    pub fn ends_at_first_hits(&self) -> bool {
-        let meets_others = !self.volumes.infos.is_empty() || !self.camera_media.is_empty();
-        !(meets_others || self.refines() || self.scatters())
+    pub fn meets_surfaces_alone(&self) -> bool {
+        self.volumes.infos.is_empty() && self.camera_media.is_empty() && !self.refines()
     }
 
     /// Parameters of `camera_trace` for one tile, whose rays may spend so much work.
@@ -83,6 +82,7 @@ impl Plan {
             background: wave.background,
             ranks: self.discs_of(tile, grid).ranks,
             transparent: wave.transparent,
+            max_bounces: wave.max_bounces,
         }
     }
 }

@@ -12,9 +12,9 @@ use crate::budget::{Budget, MOST};
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
     AlbedoIo, CameraRays, CameraRaysIo, CameraTrace, CameraTraceIo, Classify, ClassifyIo,
-    DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Isosurface, ListMarked, March, PointLight,
-    Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start,
-    SurfaceHit, SurfaceHitIo,
+    DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Isosurface, ListMarked, March, Marks,
+    PointLight, Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo,
+    Start, SurfaceHit, SurfaceHitIo,
 };
 use crate::samples::Samples;
 use crate::state::{RayLoop, RayState};
@@ -22,19 +22,18 @@ use crate::volumes::VolumeBuffers;
 use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder, Timings};
 use kernels::layout::{
-    FilmPixel, Hit, NONE, Polynomial, StateRay, TraceParams, WAVE_FROM_CAMERA, WAVE_SHARES_PATH,
-    WaveParams,
+    FilmPixel, Hit, NONE, Path, Polynomial, TraceParams, WAVE_SHARES_PATH, WaveParams,
 };
-use plan::{Picture, Plan, Rays, Window, camera_wave};
+use plan::{MAX_DISC_PAIRS, Picture, Plan, Rays, Window, camera_wave};
 use points::Watch;
-use points::device::Scan;
 use points::device::Surfaces;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Of 16 bytes.
 const TEXELS_A_POLYNOMIAL: u64 = (size_of::<Polynomial>() / 16) as u64;
-const TEXELS_A_RAY: u64 = (size_of::<StateRay>() / 16) as u64;
+/// Of a path, the longest of a wave's records.
+const TEXELS_A_RAY: u64 = (size_of::<Path>() / 16) as u64;
 
 /// Rays are listed where at least one of so many of the last pass has ended.
 const ENDED_SHARE: u32 = 4;
@@ -116,6 +115,7 @@ pub struct Renderer {
     samples: Samples,
     hits: Buffer,
     live: Buffer,
+    live_marks: Marks,
     live_rays: Buffer,
     wave: WaveBuffers,
     volumes: Option<VolumeBuffers>,
@@ -125,6 +125,8 @@ pub struct Renderer {
     discs: Discs,
     /// Whether no ray of `camera_trace` has needed more work than it may spend.
     ends_at_once: bool,
+    /// Rays of this sample: hits times lights, and rays of waves from surfaces.
+    asked: Asked,
     passes: Passes,
     recorder: Recorder,
     budget: Budget,
@@ -147,16 +149,10 @@ struct Passes {
     isosurface: Isosurface,
     point_light: PointLight,
     list_marked: ListMarked,
-    scan: Scan,
 }
 
 impl Passes {
-    fn new(
-        device: &Arc<Device>,
-        rays: u32,
-        form: RayLoop,
-        scene: u32,
-    ) -> Result<Self, RenderError> {
+    fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, RenderError> {
         Ok(Self {
             camera_rays: CameraRays::new(device, form)?,
             camera_trace: CameraTrace::new(device, scene)?,
@@ -171,10 +167,29 @@ impl Passes {
             march: March::new(device, form)?,
             isosurface: Isosurface::new(device, form)?,
             point_light: PointLight::new(device, form)?,
-            list_marked: ListMarked::new(device, rays)?,
-            scan: Scan::new(device)?,
+            list_marked: ListMarked::new(device)?,
         })
     }
+}
+
+/// How many rays of a sample there would be, had none a reason not to be sent.
+#[derive(Debug, Clone, Copy, Default)]
+struct Asked {
+    /// Diffuse hits, for each light.
+    lights: u64,
+    /// Rays from surfaces that are not diffuse.
+    scattered: u64,
+}
+
+/// What became of the rays of a wave.
+#[derive(Debug, Clone, Copy)]
+struct Classes {
+    /// Hits on diffuse surfaces that light is asked for.
+    lit: u32,
+    /// Hits on others.
+    scattering: u32,
+    /// Rays of the next wave.
+    next: u32,
 }
 
 /// Which rays a pass works on.
@@ -217,7 +232,7 @@ impl Renderer {
         let pixels = tiles.iter().map(Window::pixels).max().unwrap_or(1) as u64;
         let rays = tiles.iter().map(camera_wave).max().unwrap_or(1) * plan.rays_per_pixel();
         let records = plan.cloud.points.len() as u64 * TEXELS_A_POLYNOMIAL;
-        let lists = (surfaces.cells.bytes() / 8).max(surfaces.slots.bytes() / 4);
+        let lists = (surfaces.cells.bytes() / 8).max(u64::from(MAX_DISC_PAIRS));
         let longest = records.max(lists).max(u64::from(rays) * TEXELS_A_RAY);
         let form = RayLoop::of(plan.ray_loop, device, longest);
         let shadows = if plan.lights.is_empty() { 1 } else { rays };
@@ -234,6 +249,7 @@ impl Renderer {
             film: Buffer::new(device, "film", pixels * size_of::<FilmPixel>() as u64)?,
             hits: Buffer::new(device, "hits", u64::from(rays) * size_of::<Hit>() as u64)?,
             live: Buffer::new(device, "live rays", 8)?,
+            live_marks: Marks::new(device, rays, false)?,
             live_rays: Buffer::new(device, "list of live rays", u64::from(rays) * 4)?,
             wave: WaveBuffers::new(device, rays, plan.scatters())?,
             volumes: VolumeBuffers::new(device, &plan.volumes, rays)?,
@@ -241,8 +257,9 @@ impl Renderer {
             form,
             shadows: RayState::new(device, shadows, form, false)?,
             ends_at_once: true,
+            asked: Asked::default(),
             discs: Discs::new(device, plan.cloud.points.len() as u32)?,
-            passes: Passes::new(device, rays, form, plan.scene_bits())?,
+            passes: Passes::new(device, form, plan.scene_bits())?,
             recorder: Recorder::new(device)?,
             budget: Budget::of(device.info()),
             device: Arc::clone(device),
@@ -289,8 +306,9 @@ impl Renderer {
             let started = Instant::now();
             for sample in 0..plan.samples {
                 self.trace_sample(plan, &tile, sample, &mut stats, watch)?;
-                let [shadow, reflected, refracted] = self.wave.read_tally()?;
-                let camera = tile.pixels() as u64;
+                let [dark, reflected] = self.wave.read_tally()?;
+                let (camera, shadow) = (tile.pixels() as u64, self.asked.lights - dark);
+                let refracted = self.asked.scattered - reflected;
                 picture.rays += Rays { camera, shadow, reflected, refracted };
             }
             stats.trace += started.elapsed();
@@ -314,24 +332,26 @@ impl Renderer {
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
         let mut params = plan.wave_of(tile, sample);
+        self.asked = Asked::default();
         self.recorder.fill(self.wave.tally(), 0, self.wave.tally().bytes(), 0);
         let by_discs = self.bin_discs(plan, tile, stats)?;
-        if by_discs && self.trace_at_once(plan, tile, &params, stats, watch)? {
-            params.ray_count = 0;
-        } else {
-            self.start_rays(plan, tile, sample);
-        }
         let mut traced = if by_discs { Traced::ByDiscs(tile.size) } else { Traced::Camera };
+        match self.trace_at_once(plan, tile, &params, stats)? {
+            Some(classes) => {
+                params.flags |= WAVE_SHARES_PATH;
+                self.go_on(plan, &mut params, classes, stats, watch)?;
+                traced = Traced::Scattered;
+            }
+            None => self.start_rays(plan, tile, sample),
+        }
         while params.ray_count > 0 {
             self.trace_to_the_end(plan, [params.ray_count; 2], traced, stats, watch)?;
             traced = if traced == Traced::Scattered { traced } else { Traced::Camera };
             self.settle_hits(plan, params.ray_count, traced, stats, watch)?;
             self.isosurfaces(plan, params.ray_count, false, stats, watch)?;
             self.march(plan, params.ray_count, false, stats, watch)?;
-            let lit = self.classify(plan, &params, stats)?;
-            self.shade(plan, &WaveParams { ray_count: lit, ..params }, stats, watch)?;
-            params.ray_count = self.scatter(plan, &params, stats)?;
-            params.flags &= !WAVE_FROM_CAMERA;
+            let classes = self.classify(plan, &params, stats)?;
+            self.go_on(plan, &mut params, classes, stats, watch)?;
             traced = Traced::Scattered;
         }
         self.samples.record(&mut self.recorder, &self.film, plan, tile, sample);
@@ -353,20 +373,20 @@ impl Renderer {
         self.passes.camera_rays.record(&mut self.recorder, io, &params);
     }
 
-    /// The first wave in one pass, and its light, where its rays end at their first hits and within one pass's
-    /// work; whether they do.
+    /// The first wave in one pass, if screen tiles are listed, its rays meet nothing but surfaces, and all of them
+    /// end within one pass's work.
     fn trace_at_once(
         &mut self,
         plan: &Plan,
         tile: &Window,
         params: &WaveParams,
         stats: &mut FrameStats,
-        watch: &dyn Watch,
-    ) -> Result<bool, RenderError> {
-        let Some(lists) = self.discs.lists() else { return Ok(false) };
-        if !(self.form == RayLoop::Queue && self.ends_at_once && plan.ends_at_first_hits()) {
-            return Ok(false);
+    ) -> Result<Option<Classes>, RenderError> {
+        let may_end = self.form == RayLoop::Queue && self.ends_at_once;
+        if !(may_end && plan.by_discs(tile) && plan.meets_surfaces_alone()) {
+            return Ok(None);
         }
+        let Some(lists) = self.discs.lists() else { return Ok(None) };
         let io = CameraTraceIo {
             lists,
             surfaces: &self.surfaces,
@@ -374,34 +394,65 @@ impl Renderer {
             images: &self.images,
             texels: &self.texels,
             film: &self.film,
-            lit_hits: self.wave.lit_hits(),
-            marks: &self.passes.list_marked.marks,
+            state: self.state.started(),
+            hits: &self.hits,
+            wave: &self.wave,
             live: &self.live,
         };
-        let (rec, list_marked) = (&mut self.recorder, &self.passes.list_marked);
-        let is_lit = params.light_count > 0;
         let traced = plan.camera_trace_of(tile, &self.surfaces.grid, MOST);
-        rec.fill(&self.live, 0, 4, 0);
-        if is_lit {
-            list_marked.record_none(rec, params.ray_count);
-        }
-        self.passes.camera_trace.record(rec, io, &traced);
-        if is_lit {
-            list_marked.record(rec, params.ray_count, self.wave.lit_rays());
-        }
-        let timings = rec.submit()?;
+        self.recorder.fill(&self.live, 0, 4, 0);
+        record_no_marks(&mut self.recorder, &self.wave, plan, params);
+        self.passes.camera_trace.record(&mut self.recorder, io, &traced);
+        self.record_lists(plan, params);
+        let timings = self.recorder.submit()?;
         stats.add_kernels(&timings.passes);
         stats.traversal.add(Traced::Camera, &timings.passes);
         stats.passes += 1;
         let mut left = [0];
         self.live.read(0, &mut left)?;
         self.ends_at_once = left == [0];
-        if self.ends_at_once && is_lit {
-            let lit = list_marked.read_count(params.ray_count)?;
-            let flags = params.flags | WAVE_SHARES_PATH;
-            self.shade(plan, &WaveParams { ray_count: lit, flags, ..*params }, stats, watch)?;
+        if self.ends_at_once { Ok(Some(self.read_classes(plan, params)?)) } else { Ok(None) }
+    }
+
+    /// From what has become of a wave's rays to light and the next wave, whose parameters these are then.
+    fn go_on(
+        &mut self,
+        plan: &Plan,
+        params: &mut WaveParams,
+        classes: Classes,
+        stats: &mut FrameStats,
+        watch: &dyn Watch,
+    ) -> Result<(), RenderError> {
+        self.shade(plan, &WaveParams { ray_count: classes.lit, ..*params }, stats, watch)?;
+        self.scatter(plan, &WaveParams { ray_count: classes.scattering, ..*params }, stats)?;
+        self.asked.lights += u64::from(classes.lit) * u64::from(params.light_count);
+        self.asked.scattered += u64::from(classes.next);
+        params.ray_count = classes.next;
+        params.flags = 0;
+        Ok(())
+    }
+
+    /// Records the lists of a wave's rays by what has become of them.
+    fn record_lists(&mut self, plan: &Plan, params: &WaveParams) {
+        let (rec, wave, list) = (&mut self.recorder, &self.wave, &self.passes.list_marked);
+        if params.light_count > 0 {
+            list.record(rec, &wave.lit, params.ray_count, wave.lit_rays());
         }
-        Ok(self.ends_at_once)
+        if plan.scatters() {
+            list.record(rec, &wave.scattering, params.ray_count, wave.scattering_rays());
+            list.record_offsets(rec, &wave.next, params.ray_count);
+        }
+    }
+
+    /// What [`Renderer::record_lists`] has counted.
+    fn read_classes(&self, plan: &Plan, params: &WaveParams) -> Result<Classes, RenderError> {
+        let (wave, rays) = (&self.wave, params.ray_count);
+        let lit = if params.light_count > 0 { wave.lit.read_total(rays)? } else { 0 };
+        let [scattering, next] = match plan.scatters() {
+            true => [wave.scattering.read_total(rays)?, wave.next.read_total(rays)?],
+            false => [0; 2],
+        };
+        Ok(Classes { lit, scattering, next })
     }
 
     /// Lists the points of each screen tile, if this tile is to be traced by discs; whether it is.
@@ -439,7 +490,7 @@ impl Renderer {
         let wave = TraceParams { ray_count, cells, work, any_hit, listed: 0, passed };
         let state = if traced.to_light() { &mut self.shadows } else { &mut self.state };
         let (surfaces, live, live_rays) = (&self.surfaces, &self.live, &self.live_rays);
-        let list_marked = &self.passes.list_marked;
+        let (list_marked, live_marks) = (&self.passes.list_marked, &self.live_marks);
         let mut params = wave;
         while alive > 0 {
             if watch.interrupted() {
@@ -454,7 +505,7 @@ impl Renderer {
                 }
                 _ => {
                     if alive < params.ray_count - params.ray_count / ENDED_SHARE {
-                        list_marked.record(&mut self.recorder, ray_count, live_rays);
+                        list_marked.record(&mut self.recorder, live_marks, ray_count, live_rays);
                         let work = params.work;
                         params = TraceParams { ray_count: alive, listed: 1, work, ..wave };
                     }
@@ -464,8 +515,8 @@ impl Renderer {
                             Start::Surface
                         }
                     };
-                    list_marked.record_none(&mut self.recorder, ray_count);
-                    let marks = &list_marked.marks;
+                    live_marks.record_none(&mut self.recorder, ray_count);
+                    let marks = &live_marks.bits;
                     let io = GridTraceIo { surfaces, state, live, marks, live_rays };
                     self.passes.grid_trace.record(&mut self.recorder, io, from, &params);
                 }
@@ -498,8 +549,10 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         let params =
             TraceParams { ray_count, cells: 0, work: 0, any_hit: 0, listed: 0, passed: NONE };
-        let bytes = u64::from(ray_count) * size_of::<Hit>() as u64;
-        self.recorder.fill(&self.hits, 0, bytes, 0);
+        if plan.refines() {
+            let bytes = u64::from(ray_count) * size_of::<Hit>() as u64;
+            self.recorder.fill(&self.hits, 0, bytes, 0);
+        }
         loop {
             self.recorder.fill(&self.live, 0, 8, 0);
             let io = SurfaceHitIo {
@@ -520,8 +573,8 @@ impl Renderer {
             }
             let (surfaces, state) = (&self.surfaces, &self.state.current);
             let (rec, hits) = (&mut self.recorder, &self.hits);
-            self.passes.list_marked.record_none(rec, ray_count);
-            let marks = &self.passes.list_marked.marks;
+            self.live_marks.record_none(rec, ray_count);
+            let marks = &self.live_marks.bits;
             self.passes.refine.record_resume(rec, surfaces, state, hits, marks, &params);
             self.trace_to_the_end(plan, [ray_count, rejected], traced, stats, watch)?;
         }
@@ -566,13 +619,13 @@ impl Renderer {
         Ok(counts)
     }
 
-    /// What becomes of each ray of a wave; returns how many hit a diffuse surface.
+    /// What becomes of each ray of a wave.
     fn classify(
         &mut self,
         plan: &Plan,
         params: &WaveParams,
         stats: &mut FrameStats,
-    ) -> Result<u32, RenderError> {
+    ) -> Result<Classes, RenderError> {
         let io = ClassifyIo {
             state: &self.state.current,
             polynomials: &self.surfaces.polynomials,
@@ -581,21 +634,13 @@ impl Renderer {
             texels: &self.texels,
             hits: &self.hits,
             film: &self.film,
-            paths: self.wave.paths(),
-            lit: self.wave.lit(),
-            lit_hits: self.wave.lit_hits(),
-            next: self.wave.next(),
-            lit_rays: self.wave.lit_rays(),
+            wave: &self.wave,
         };
-        let (rec, scan) = (&mut self.recorder, &self.passes.scan);
-        self.passes.classify.record(rec, io, params);
-        self.wave.record_offsets(rec, scan, self.wave.lit(), params.ray_count);
-        if plan.scatters() {
-            self.wave.record_offsets(rec, scan, self.wave.next(), params.ray_count);
-        }
-        self.passes.classify.record_list(rec, io, params);
-        stats.add_kernels(&rec.submit()?.passes);
-        Ok(WaveBuffers::read_total(self.wave.lit(), params.ray_count)?)
+        record_no_marks(&mut self.recorder, &self.wave, plan, params);
+        self.passes.classify.record(&mut self.recorder, io, params);
+        self.record_lists(plan, params);
+        stats.add_kernels(&self.recorder.submit()?.passes);
+        self.read_classes(plan, params)
     }
 
     /// Light after light, shadow rays from a wave's diffuse hits, and then Lambert's law. The wave's rays
@@ -610,10 +655,7 @@ impl Renderer {
         if params.ray_count == 0 || params.light_count == 0 {
             return Ok(());
         }
-        let paths = match params.flags & WAVE_SHARES_PATH {
-            0 => self.wave.paths().clone(),
-            _ => self.camera_path.clone(),
-        };
+        let paths = self.paths_of(params);
         for light in 0..params.light_count {
             let io = ShadowRaysIo {
                 shadows: &self.shadows,
@@ -653,16 +695,17 @@ impl Renderer {
         Ok(())
     }
 
-    /// Makes the next wave; returns how many rays it has.
+    /// Makes the next wave. The wave's rays are those that hit what is not diffuse.
     fn scatter(
         &mut self,
         plan: &Plan,
         params: &WaveParams,
         stats: &mut FrameStats,
-    ) -> Result<u32, RenderError> {
-        if !plan.scatters() {
-            return Ok(0);
+    ) -> Result<(), RenderError> {
+        if !plan.scatters() || params.ray_count == 0 {
+            return Ok(());
         }
+        let paths = self.paths_of(params);
         let io = ScatterIo {
             state: &self.state,
             surfaces: &self.surfaces,
@@ -671,16 +714,33 @@ impl Renderer {
             film: &self.film,
             images: &self.images,
             texels: &self.texels,
-            paths: self.wave.paths(),
-            next_paths: self.wave.next_paths(),
-            next: self.wave.next(),
-            tally: self.wave.tally(),
+            paths: &paths,
+            wave: &self.wave,
         };
         self.passes.scatter.record(&mut self.recorder, io, params);
         stats.add_kernels(&self.recorder.submit()?.passes);
         self.state.swap();
         self.wave.swap();
-        Ok(WaveBuffers::read_total(self.wave.next(), params.ray_count)?)
+        Ok(())
+    }
+
+    /// Of the wave's rays, or the one that they share.
+    fn paths_of(&self, params: &WaveParams) -> Buffer {
+        match params.flags & WAVE_SHARES_PATH {
+            0 => self.wave.paths().clone(),
+            _ => self.camera_path.clone(),
+        }
+    }
+}
+
+/// Records that nothing is known yet of what becomes of a wave's rays.
+fn record_no_marks(rec: &mut Recorder, wave: &WaveBuffers, plan: &Plan, params: &WaveParams) {
+    if params.light_count > 0 {
+        wave.lit.record_none(rec, params.ray_count);
+    }
+    if plan.scatters() {
+        wave.scattering.record_none(rec, params.ray_count);
+        wave.next.record_none(rec, params.ray_count);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::surface_lists;
 use crate::state::RayLoop;
-use gpu::{Binding, Buffer, PassBuilder};
+use gpu::{Binding, Buffer, PassBuilder, Texel};
 use kernels::layout::{
     SHADE_COLORS, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, TRACE_CELLS, TRACE_INFO,
     TRACE_POLYNOMIALS, TRACE_SLOTS,
@@ -22,9 +22,10 @@ pub(crate) struct AlbedoIo<'a> {
 impl AlbedoIo<'_> {
     /// Of the kernel.
     pub fn bindings(form: RayLoop) -> impl Iterator<Item = (u32, Binding)> {
-        let buffers = [TRACE_INFO, SHADE_OBJECTS, SHADE_COLORS, SHADE_IMAGES, SHADE_TEXELS];
+        let buffers = [TRACE_INFO, SHADE_COLORS, SHADE_IMAGES, SHADE_TEXELS];
         let buffers = buffers.map(|binding| (binding, Binding::StorageBuffer));
-        buffers.into_iter().chain(surface_lists(form))
+        let objects = (SHADE_OBJECTS, form.read(Texel::Four));
+        buffers.into_iter().chain([objects]).chain(surface_lists(form))
     }
 
     /// Binds all of it.

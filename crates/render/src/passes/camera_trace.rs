@@ -2,12 +2,13 @@
 
 use super::{disc_lists, over_pixels, surface_lists};
 use crate::discs::DiscLists;
-use crate::state::RayLoop;
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use crate::state::{RayLoop, StoredRays, Touch};
+use crate::wave::WaveBuffers;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
     CameraTraceParams, DISC_KEYS_IN, DISC_RANGES_IN, DISC_SLOTS_IN, SHADE_FILM, SHADE_IMAGES,
-    SHADE_OBJECTS, SHADE_TEXELS, TRACE_CELLS, TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS,
-    TRACE_SLOTS, WAVE_LIT_HITS, WAVE_MARKS,
+    SHADE_OBJECTS, SHADE_TEXELS, TRACE_CELLS, TRACE_HITS, TRACE_INFO, TRACE_LIVE,
+    TRACE_POLYNOMIALS, TRACE_SLOTS, WAVE_LIT, WAVE_LIT_HITS, WAVE_NEXT_MARKS, WAVE_SCATTERING,
 };
 use kernels::spirv;
 use points::device::Surfaces;
@@ -22,10 +23,11 @@ pub(crate) struct CameraTraceIo<'a> {
     pub images: &'a Buffer,
     pub texels: &'a Buffer,
     pub film: &'a Buffer,
-    /// One `LitHit` a ray.
-    pub lit_hits: &'a Buffer,
-    /// One bit a ray, zero before.
-    pub marks: &'a Buffer,
+    /// Of rays that scatter.
+    pub state: &'a StoredRays,
+    pub hits: &'a Buffer,
+    /// Marks are none before.
+    pub wave: &'a WaveBuffers,
     /// One u32, zero before: how many rays have not ended.
     pub live: &'a Buffer,
 }
@@ -43,14 +45,18 @@ impl CameraTrace {
         let buffers = [
             TRACE_INFO,
             TRACE_LIVE,
-            SHADE_OBJECTS,
+            TRACE_HITS,
             SHADE_IMAGES,
             SHADE_TEXELS,
             SHADE_FILM,
+            WAVE_LIT,
             WAVE_LIT_HITS,
-            WAVE_MARKS,
+            WAVE_SCATTERING,
+            WAVE_NEXT_MARKS,
         ];
-        let mut bindings = buffers.map(|binding| (binding, Binding::StorageBuffer)).to_vec();
+        let mut bindings = form.bindings(Touch::Writes);
+        bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        bindings.push((SHADE_OBJECTS, form.read(Texel::Four)));
         bindings.extend(surface_lists(form));
         bindings.extend(disc_lists(form));
         let params = size_of::<CameraTraceParams>();
@@ -62,7 +68,8 @@ impl CameraTrace {
 
     /// Records the first wave of a tile.
     pub fn record(&self, rec: &mut Recorder, io: CameraTraceIo<'_>, params: &CameraTraceParams) {
-        rec.pass(Self::NAME, &self.kernel)
+        io.state
+            .bind_written(rec.pass(Self::NAME, &self.kernel))
             .buffer(DISC_RANGES_IN, &io.lists.tiles)
             .buffer(DISC_KEYS_IN, &io.lists.pairs.keys)
             .buffer(DISC_SLOTS_IN, &io.lists.pairs.slots)
@@ -75,8 +82,11 @@ impl CameraTrace {
             .buffer(SHADE_IMAGES, io.images)
             .buffer(SHADE_TEXELS, io.texels)
             .buffer(SHADE_FILM, io.film)
-            .buffer(WAVE_LIT_HITS, io.lit_hits)
-            .buffer(WAVE_MARKS, io.marks)
+            .buffer(TRACE_HITS, io.hits)
+            .buffer(WAVE_LIT, &io.wave.lit.bits)
+            .buffer(WAVE_LIT_HITS, io.wave.lit_hits())
+            .buffer(WAVE_SCATTERING, &io.wave.scattering.bits)
+            .buffer(WAVE_NEXT_MARKS, &io.wave.next.bits)
             .push(params)
             .dispatch(over_pixels(params.tile_size));
     }

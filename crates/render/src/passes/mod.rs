@@ -32,7 +32,7 @@ pub(crate) use disc_trace::{DiscTrace, DiscTraceIo};
 pub(crate) use grid_trace::{GridTrace, GridTraceIo, Start};
 pub(crate) use isosurface::{Isosurface, IsosurfaceIo, Searching};
 pub(crate) use march::{March, MarchIo, Marched};
-pub(crate) use marked::ListMarked;
+pub(crate) use marked::{ListMarked, Marks};
 pub(crate) use point_light::{PointLight, PointLightIo};
 pub(crate) use refine::{Refine, RefineIo};
 pub(crate) use scatter::{Scatter, ScatterIo};

@@ -36,10 +36,10 @@ impl Refine {
     pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
         let params = size_of::<TraceParams>();
         let mut bindings = form.bindings(Touch::Reads);
-        let buffers =
-            [TRACE_INFO, TRACE_LIVE, SHADE_OBJECTS, TRACE_HITS, REFINE_OFFSETS, REFINE_OUTCOMES];
+        let buffers = [TRACE_INFO, TRACE_LIVE, TRACE_HITS, REFINE_OFFSETS, REFINE_OUTCOMES];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         bindings.push((TRACE_POLYNOMIALS, form.read(Texel::Four)));
+        bindings.push((SHADE_OBJECTS, form.read(Texel::Four)));
         bindings.push((REFINE_POINTS, form.read(Texel::Four)));
         let module = form.module(spirv::refine, spirv::refine_queue);
         let refine = Kernel::new(device, Self::NAME, &module, &bindings, params)?;
