@@ -7,7 +7,7 @@
 // writes  the ray state    every ray, also those that are done: the images swap after this. Of listed rays
 //                          in place, theirs alone
 //         live             how many rays have not ended yet
-//         marks            one bit for each of these; must be zero before
+//         marks            one bit for each of these, by its place in the list; must be zero before
 // runs    one invocation per ray of the wave; dispatched until no ray lives
 // twin    crates/reference/src/grid_trace.rs
 //
@@ -40,9 +40,9 @@ layout(push_constant) uniform Push { TraceParams params; };
 #define BATCH 32u // points tested before any is solved: one bit each
 
 void main() {
-    uint index = list_index();
-    if (index >= params.ray_count) return;
-    if (params.listed != 0u) index = live_rays[index];
+    uint place = list_index();
+    if (place >= params.ray_count) return;
+    uint index = params.listed != 0u ? live_rays[place] : place;
     Ray ray = load_ray(index);
 
     vec3 o = ray.origin, d = ray.direction;
@@ -143,6 +143,6 @@ void main() {
     store_progress(index, ray);
     if (alive) {
         atomicAdd(live, 1u);
-        atomicOr(marks[index / 32u], 1u << (index & 31u));
+        atomicOr(marks[place / 32u], 1u << (place & 31u));
     }
 }

@@ -1,6 +1,7 @@
 // list_marked: the rays whose bits are set, one after another.
 //
 // reads   marks
+//         list_in          with `listed`: the rays that these are marks of
 //         offsets          of the first ray of each word in the list
 // writes  list             the rays
 // runs    one invocation per word
@@ -13,6 +14,7 @@
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = WAVE_MARKS) readonly buffer Marks { uint marks[]; };
 layout(std430, binding = LIVE_OFFSETS) readonly buffer Offsets { uint offsets[]; };
+layout(std430, binding = LIST_IN) readonly buffer ListIn { uint list_in[]; };
 layout(std430, binding = LIVE_RAYS) writeonly buffer List { uint list[]; };
 layout(push_constant) uniform Push { MarkParams params; };
 
@@ -22,7 +24,8 @@ void main() {
     uint bits = marks[word];
     uint to = offsets[word];
     while (bits != 0u) {
-        list[to] = 32u * word + uint(findLSB(bits));
+        uint place = 32u * word + uint(findLSB(bits));
+        list[to] = params.listed != 0u ? list_in[place] : place;
         bits &= bits - 1u;
         ++to;
     }

@@ -39,7 +39,9 @@ void main() {
     LitHit hit = lit_hit_of(ray);
     uint tile_at = path_of(ray).pixel;
     vec3 sum = vec3(0.0);
-    if (params.light > 0u) sum = gathered(at, tile_at);
+    if (scene_has(SCENE_MANY_LIGHTS)) {
+        if (params.light > 0u) sum = gathered(at, tile_at);
+    }
     vec2 place = vec2(0.5); // of a light: its centre, unless it is sampled
     if (scene_has(SCENE_SAMPLES)) {
         uvec2 pixel = params.tile_origin + uvec2(tile_at % params.tile_size.x, tile_at / params.tile_size.x);
@@ -48,7 +50,8 @@ void main() {
     LightSample light = sample_light(lights[params.light], hit.position, place);
     vec3 arriving = light.arriving * max(dot3(hit.normal, light.towards), 0.0);
     bool arrives = any(greaterThan(arriving, vec3(0.0)));
-    light_sums[at] = LightSum(sum, 0u, arriving, 0u);
+    if (scene_has(SCENE_MANY_LIGHTS)) light_sums[at].sum = sum;
+    light_sums[at].arriving = arriving;
     Ray shadow = no_ray();
     if (arrives) {
         shadow = new_ray(hit.position, light.towards, enter_grid(grid, hit.position, light.towards), hit.slot);

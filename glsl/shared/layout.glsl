@@ -13,11 +13,10 @@
 #define LINE_ROW 1048576 // invocations a row of such a kernel, where one row is not enough
 #define TILE_GROUP 64 // invocations a workgroup of every kernel that runs over pixels, 8 x 8 of them
 #define RUN_LENGTH 256 // entries that one invocation of the scan and sort kernels walks
-#define DIGIT_BITS 8 // bits of a key sorted in one round
+#define DIGIT_BITS 8 // bits of a key sorted in one round at most
 
 // disc_count, disc_emit, disc_ranges
 #define DISC_TILE 8 // pixels a screen tile has along each side: those of one workgroup
-#define DISC_POLYNOMIALS 0
 #define DISC_OFFSETS 1
 #define DISC_KEYS 2
 #define DISC_SLOTS 3
@@ -172,6 +171,7 @@
 #define SCENE_ABSORBS 8192  // glass does
 #define SCENE_CHANCE 16384  // decides whether glass reflects or refracts
 #define SCENE_VOLUMES 32768 // paths carry what volumes emit
+#define SCENE_MANY_LIGHTS 65536 // more than one
 
 // What transparent pictures leave the background out of.
 #define TRANSPARENT_CAMERA 1 // camera rays
@@ -197,6 +197,7 @@
 #define WAVE_MARKS 48
 #define WAVE_SCATTERING 49
 #define WAVE_NEXT_MARKS 50
+#define LIST_IN 51
 #define SHADE_IMAGES 30
 #define SHADE_TEXELS 31
 
@@ -356,10 +357,11 @@ struct ScanParams {      // 8 bytes
     uint has_base;       // 4  1: sums holds what comes before each run
 };
 
-struct SortParams {      // 12 bytes
-    uint count;          // 0
-    uint shift;          // 4  lowest bit of the digit
-    uint runs;           // 8
+struct SortParams {      // 16 bytes
+    uint count;          //  0
+    uint shift;          //  4  lowest bit of the digit
+    uint runs;           //  8
+    uint bits;           // 12  of the digit, DIGIT_BITS at most
 };
 
 struct CameraParams {    // 96 bytes
@@ -440,9 +442,10 @@ struct LitHit {          // 32 bytes
     uint pad;            // 28
 };
 
-struct MarkParams {      // 8 bytes
+struct MarkParams {      // 12 bytes
     uint words;          // 0  of 32 marks each
     uint pairs;          // 4  1: a word is followed by one whose marks count twice
+    uint listed;         // 8  1: marks are of the rays of a list
 };
 
 // Of the kernels that scatter and shade the rays of a wave.

@@ -58,8 +58,6 @@ constants! {
     DIGIT_BITS = 8;
     /// Pixels that a screen tile has along each side.
     DISC_TILE = 8;
-    /// Binding of the discs' build: polynomials.
-    DISC_POLYNOMIALS = 0;
     /// Binding of the discs' build: counts, then offsets, by slot.
     DISC_OFFSETS = 1;
     /// Binding of the discs' build: screen tile and rank of each pair.
@@ -280,6 +278,8 @@ constants! {
     WAVE_SCATTERING = 49;
     /// Binding of the kernels of a wave: two marks a ray, for the rays of the next wave that it makes.
     WAVE_NEXT_MARKS = 50;
+    /// Binding of `list_marked`: the rays whose marks these are, where they are listed.
+    LIST_IN = 51;
     /// [`WaveParams::flags`]: rays come from the camera.
     WAVE_FROM_CAMERA = 1;
     /// [`WaveParams::flags`]: all rays have the camera's path, but for the pixel.
@@ -316,6 +316,8 @@ constants! {
     SCENE_CHANCE = 16384;
     /// Paths carry what volumes emit.
     SCENE_VOLUMES = 32768;
+    /// More than one light.
+    SCENE_MANY_LIGHTS = 65536;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
     VOLUME_SHEPARD = 0;
     /// [`VolumeInfo::kernel`] of the weighted sum.
@@ -674,8 +676,10 @@ pub struct SortParams {
     pub shift: u32,
     /// Runs of `RUN_LENGTH` keys.
     pub runs: u32,
+    /// Bits of the digit, `DIGIT_BITS` at most.
+    pub bits: u32,
 }
-gpu_layout!(SortParams, 12, { count: 0, shift: 4, runs: 8 });
+gpu_layout!(SortParams, 16, { count: 0, shift: 4, runs: 8, bits: 12 });
 
 /// Push constants of `camera_rays`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -854,8 +858,10 @@ pub struct MarkParams {
     pub words: u32,
     /// 1: a word is followed by one whose marks count twice.
     pub pairs: u32,
+    /// 1: marks are of the rays of a list.
+    pub listed: u32,
 }
-gpu_layout!(MarkParams, 8, { words: 0, pairs: 4 });
+gpu_layout!(MarkParams, 12, { words: 0, pairs: 4, listed: 8 });
 
 /// Push constants of the kernels that scatter and shade the rays of a wave.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

@@ -50,8 +50,12 @@ modules! {
     count_marked,
     /// Screen tiles that each disc covers.
     disc_count,
+    /// `disc_count` for rays in a queue.
+    disc_count_queue,
     /// Pairs of screen tile and point.
     disc_emit,
+    /// `disc_emit` for rays in a queue.
+    disc_emit_queue,
     /// Where each screen tile's points begin and end.
     disc_ranges,
     /// The nearest hit among the points of a screen tile.
@@ -188,6 +192,8 @@ pub const VARIANTS: &[(&str, &str, &[&str])] = &[
     ("bound_reach_texels_few", "bound_reach", &["POINTS_AS_TEXELS", "FEW"]),
     ("camera_rays_queue", "camera_rays", &["QUEUE"]),
     ("classify_queue", "classify", &["QUEUE"]),
+    ("disc_count_queue", "disc_count", &["QUEUE"]),
+    ("disc_emit_queue", "disc_emit", &["QUEUE"]),
     ("disc_trace_queue", "disc_trace", &["QUEUE"]),
     ("find_neighbors_texels", "find_neighbors", &["POINTS_AS_TEXELS"]),
     ("find_neighbors_texels_few", "find_neighbors", &["POINTS_AS_TEXELS", "FEW"]),

@@ -8,8 +8,8 @@ use kernels::layout::{
 /// Pairs of a screen tile and a point that one tile of the picture may have. One binding holds 32
 /// million on any device; what has more is traced through the grid, which gives the same bytes.
 pub const MAX_DISC_PAIRS: u32 = 16_000_000;
-/// Bits of a pair's key: three rounds of the sort. What the screen tile leaves goes to the rank.
-const KEY_BITS: u32 = 24;
+/// Bits of a pair's key: three short rounds of the sort. What the screen tile leaves goes to the rank.
+const KEY_BITS: u32 = 21;
 /// Depths are told apart from the farthest down to this share of it.
 const NEAREST_SHARE: f64 = 1.0 / 64.0;
 
@@ -124,7 +124,7 @@ mod tests {
         for (eye, nearest) in [([0.0, 0.0, 5.0], 4.0), ([0.5, 0.0, 0.0], 4.25f32.sqrt() / 64.0)] {
             let ranks = depth_ranks(eye, &grid([-1.0; 3], 1.0), 4800);
             assert!((ranks.nearest / nearest - 1.0).abs() < 1e-6, "{ranks:?}");
-            assert_eq!(ranks.bits, 11);
+            assert_eq!(ranks.bits, 8);
             let highest = (ranks.farthest.to_bits() - ranks.nearest.to_bits()) >> ranks.shift;
             assert!(highest < 1 << ranks.bits && highest >= 1 << (ranks.bits - 1), "{ranks:?}");
         }

@@ -31,9 +31,9 @@ use kernels::layout::{
     self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, LIGHT_DIRECTIONAL,
     LIGHT_POINT, MATERIAL_DIFFUSE, MATERIAL_GLASS, MEDIA_WORDS, NONE, ObjectInfo, SCENE_ABSORBS,
     SCENE_ALPHA, SCENE_BLENDS, SCENE_CHANCE, SCENE_DIAGNOSTICS, SCENE_DIFFUSE, SCENE_DISPERSES,
-    SCENE_ENVIRONMENT, SCENE_LIGHTS, SCENE_NESTED, SCENE_REFINES, SCENE_SAMPLES, SCENE_SCATTERS,
-    SCENE_TEXTURES, SCENE_VALUES, SCENE_VOLUMES, TRANSPARENT_CAMERA, TRANSPARENT_GLASS,
-    WAVE_FROM_CAMERA, WaveParams,
+    SCENE_ENVIRONMENT, SCENE_LIGHTS, SCENE_MANY_LIGHTS, SCENE_NESTED, SCENE_REFINES, SCENE_SAMPLES,
+    SCENE_SCATTERS, SCENE_TEXTURES, SCENE_VALUES, SCENE_VOLUMES, TRANSPARENT_CAMERA,
+    TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
 };
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
 use points::{Cloud, CloudError, ObjectPoints, PointSet, bounds_of};
@@ -340,6 +340,7 @@ impl Plan {
             (SCENE_ABSORBS, any(|object| is_glass(object) && object.absorption != [0.0; 3])),
             (SCENE_CHANCE, self.wave.fresnel != 0),
             (SCENE_VOLUMES, !self.volumes.infos.is_empty()),
+            (SCENE_MANY_LIGHTS, self.lights.len() > 1),
         ]
         .into_iter()
         .fold(0, |bits, (bit, is_set)| if is_set { bits | bit } else { bits })

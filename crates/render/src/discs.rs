@@ -4,6 +4,7 @@
 //! next and grow where they must.
 
 use crate::passes::{DiscCount, DiscEmit, DiscRanges};
+use crate::state::RayLoop;
 use gpu::{Buffer, Device, GpuError, Recorder, Timings};
 use kernels::layout::{DepthRanks, DiscParams};
 use plan::{MAX_DISC_PAIRS, Plan, Window, screen_tiles};
@@ -53,11 +54,11 @@ pub(crate) struct Discs {
 
 impl Discs {
     /// For a scene of `point_count` points.
-    pub fn new(device: &Arc<Device>, point_count: u32) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, point_count: u32, form: RayLoop) -> Result<Self, GpuError> {
         Ok(Self {
             device: Arc::clone(device),
-            count: DiscCount::new(device)?,
-            emit: DiscEmit::new(device)?,
+            count: DiscCount::new(device, form)?,
+            emit: DiscEmit::new(device, form)?,
             ranges: DiscRanges::new(device)?,
             scan: Scan::new(device)?,
             sort: Sort::new(device)?,

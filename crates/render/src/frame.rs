@@ -116,7 +116,8 @@ pub struct Renderer {
     hits: Buffer,
     live: Buffer,
     live_marks: Marks,
-    live_rays: Buffer,
+    /// The last list of those that live, and the one before.
+    live_rays: [Buffer; 2],
     wave: WaveBuffers,
     volumes: Option<VolumeBuffers>,
     state: RayState,
@@ -235,6 +236,7 @@ impl Renderer {
         let lists = (surfaces.cells.bytes() / 8).max(u64::from(MAX_DISC_PAIRS));
         let longest = records.max(lists).max(u64::from(rays) * TEXELS_A_RAY);
         let form = RayLoop::of(plan.ray_loop, device, longest);
+        let live_rays = || Buffer::new(device, "list of live rays", u64::from(rays) * 4);
         let shadows = if plan.lights.is_empty() { 1 } else { rays };
         Ok(Self {
             surfaces,
@@ -250,7 +252,7 @@ impl Renderer {
             hits: Buffer::new(device, "hits", u64::from(rays) * size_of::<Hit>() as u64)?,
             live: Buffer::new(device, "live rays", 8)?,
             live_marks: Marks::new(device, rays, false)?,
-            live_rays: Buffer::new(device, "list of live rays", u64::from(rays) * 4)?,
+            live_rays: [live_rays()?, live_rays()?],
             wave: WaveBuffers::new(device, rays, plan.scatters())?,
             volumes: VolumeBuffers::new(device, &plan.volumes, rays)?,
             state: RayState::new(device, rays, form, plan.scatters())?,
@@ -258,7 +260,7 @@ impl Renderer {
             shadows: RayState::new(device, shadows, form, false)?,
             ends_at_once: true,
             asked: Asked::default(),
-            discs: Discs::new(device, plan.cloud.points.len() as u32)?,
+            discs: Discs::new(device, plan.cloud.points.len() as u32, form)?,
             passes: Passes::new(device, form, plan.scene_bits())?,
             recorder: Recorder::new(device)?,
             budget: Budget::of(device.info()),
@@ -436,10 +438,10 @@ impl Renderer {
     fn record_lists(&mut self, plan: &Plan, params: &WaveParams) {
         let (rec, wave, list) = (&mut self.recorder, &self.wave, &self.passes.list_marked);
         if params.light_count > 0 {
-            list.record(rec, &wave.lit, params.ray_count, wave.lit_rays());
+            list.record(rec, &wave.lit, params.ray_count, None, wave.lit_rays());
         }
         if plan.scatters() {
-            list.record(rec, &wave.scattering, params.ray_count, wave.scattering_rays());
+            list.record(rec, &wave.scattering, params.ray_count, None, wave.scattering_rays());
             list.record_offsets(rec, &wave.next, params.ray_count);
         }
     }
@@ -489,7 +491,7 @@ impl Renderer {
         let work = self.budget.work();
         let wave = TraceParams { ray_count, cells, work, any_hit, listed: 0, passed };
         let state = if traced.to_light() { &mut self.shadows } else { &mut self.state };
-        let (surfaces, live, live_rays) = (&self.surfaces, &self.live, &self.live_rays);
+        let (surfaces, live, live_rays) = (&self.surfaces, &self.live, &mut self.live_rays);
         let (list_marked, live_marks) = (&self.passes.list_marked, &self.live_marks);
         let mut params = wave;
         while alive > 0 {
@@ -505,7 +507,10 @@ impl Renderer {
                 }
                 _ => {
                     if alive < params.ray_count - params.ray_count / ENDED_SHARE {
-                        list_marked.record(&mut self.recorder, live_marks, ray_count, live_rays);
+                        live_rays.swap(0, 1);
+                        let from = (params.listed == 1).then_some(&live_rays[1]);
+                        let (rec, rays) = (&mut self.recorder, params.ray_count);
+                        list_marked.record(rec, live_marks, rays, from, &live_rays[0]);
                         let work = params.work;
                         params = TraceParams { ray_count: alive, listed: 1, work, ..wave };
                     }
@@ -515,7 +520,8 @@ impl Renderer {
                             Start::Surface
                         }
                     };
-                    live_marks.record_none(&mut self.recorder, ray_count);
+                    live_marks.record_none(&mut self.recorder, params.ray_count);
+                    let live_rays = &live_rays[0];
                     let marks = &live_marks.bits;
                     let io = GridTraceIo { surfaces, state, live, marks, live_rays };
                     self.passes.grid_trace.record(&mut self.recorder, io, from, &params);

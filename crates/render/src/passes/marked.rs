@@ -2,7 +2,7 @@
 
 use super::line;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
-use kernels::layout::{LIVE_OFFSETS, LIVE_RAYS, MarkParams, WAVE_MARKS};
+use kernels::layout::{LIST_IN, LIVE_OFFSETS, LIVE_RAYS, MarkParams, WAVE_MARKS};
 use kernels::spirv;
 use points::device::Scan;
 use std::sync::Arc;
@@ -66,7 +66,7 @@ impl ListMarked {
             Kernel::new(device, name, module, &bindings, params)
         };
         let counted = [WAVE_MARKS, LIVE_OFFSETS];
-        let listed = [WAVE_MARKS, LIVE_OFFSETS, LIVE_RAYS];
+        let listed = [WAVE_MARKS, LIVE_OFFSETS, LIST_IN, LIVE_RAYS];
         Ok(Self {
             count: kernel(Self::COUNT, &spirv::count_marked(), &counted)?,
             list: kernel(Self::NAME, &spirv::list_marked(), &listed)?,
@@ -76,7 +76,7 @@ impl ListMarked {
 
     /// Records how many of so many rays have a mark, and where those of each word begin.
     pub fn record_offsets(&self, rec: &mut Recorder, marks: &Marks, rays: u32) {
-        let params = MarkParams { words: rays.div_ceil(MARKS), pairs: marks.pairs };
+        let params = MarkParams { words: rays.div_ceil(MARKS), pairs: marks.pairs, listed: 0 };
         rec.fill(&marks.offsets, u64::from(params.words) * 4, 4, 0);
         rec.pass(Self::COUNT, &self.count)
             .buffer(WAVE_MARKS, &marks.bits)
@@ -86,13 +86,22 @@ impl ListMarked {
         self.scan.record(rec, &marks.offsets, params.words + 1, &marks.levels);
     }
 
-    /// Records the same, and the list of those that do.
-    pub fn record(&self, rec: &mut Recorder, marks: &Marks, rays: u32, list: &Buffer) {
+    /// Records the same, and the list of those that do: of the rays of a wave, or of those of the list `from`.
+    pub fn record(
+        &self,
+        rec: &mut Recorder,
+        marks: &Marks,
+        rays: u32,
+        from: Option<&Buffer>,
+        list: &Buffer,
+    ) {
         self.record_offsets(rec, marks, rays);
-        let params = MarkParams { words: rays.div_ceil(MARKS), pairs: 0 };
+        let params =
+            MarkParams { words: rays.div_ceil(MARKS), pairs: 0, listed: u32::from(from.is_some()) };
         rec.pass(Self::NAME, &self.list)
             .buffer(WAVE_MARKS, &marks.bits)
             .buffer(LIVE_OFFSETS, &marks.offsets)
+            .buffer(LIST_IN, from.unwrap_or(&marks.bits))
             .buffer(LIVE_RAYS, list)
             .push(&params)
             .dispatch(line(params.words));
