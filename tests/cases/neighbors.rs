@@ -13,8 +13,8 @@ fn check(name: &str, objects: &[Vec<[f64; 3]>], k: u32) -> u64 {
         .map(|(positions, file_index)| ObjectPoints { positions, file_index })
         .collect();
     let cloud = Cloud::new(&objects).expect("a cloud");
-    let (lists, on_host) =
-        nearest_others(&Bench::open().device, &cloud, k).expect("lists of the device");
+    let (lists, on_host) = Bench::open()
+        .with_device(|device| nearest_others(device, &cloud, k).expect("lists of the device"));
     let k = k as usize;
     for object in &cloud.objects {
         let range = object.range();
