@@ -50,6 +50,11 @@ pub struct Row {
     pub rays_per_second: RaysPerSecond,
     /// Cells a ray may cross in a pass; 0: as many as it likes.
     pub cells_per_pass: u32,
+    /// How camera rays found their first hit, as `render.primary` has it: what the scene asked for, or was chosen.
+    pub primary: &'static str,
+    /// Where the ray state lived, as `render.loop` has it; `null` on the CPU reference.
+    #[serde(rename = "loop")]
+    pub ray_loop: Option<&'static str>,
     /// Dispatches of the traversal.
     pub passes: u32,
     /// Points that a ray was tested against, on average.
@@ -192,6 +197,12 @@ impl Row {
             rays,
             rays_per_second: RaysPerSecond::new(&rays, trace_ms.median, &frame.traversal),
             cells_per_pass: plan.cells_per_pass,
+            primary: if plan.tiles().iter().any(|tile| plan.by_discs(tile)) {
+                "discs"
+            } else {
+                "grid"
+            },
+            ray_loop: built.ray_loop(),
             passes: frame.passes,
             tests_per_ray: frame.tests as f64 / frame.rays.all().max(1) as f64,
             bytes_per_point: (built.bytes() + plan.volumes.bytes()) as f64 / points.max(1) as f64,

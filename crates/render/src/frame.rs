@@ -274,6 +274,12 @@ impl Renderer {
         self.budget = Budget::fixed(work);
     }
 
+    /// Where the ray state lives: what the scene asked for, or was chosen.
+    #[must_use]
+    pub fn ray_loop(&self) -> RayLoop {
+        self.form
+    }
+
     /// The surfaces that are traced.
     #[must_use]
     pub fn surfaces(&self) -> &Surfaces {

@@ -18,6 +18,7 @@ mod wave;
 pub use discs::DiscLists;
 pub use frame::{FrameStats, Renderer, Traversal};
 pub use points::device::BuildError;
+pub use state::RayLoop;
 
 /// Why a frame could not be finished.
 #[derive(Debug, thiserror::Error)]
