@@ -155,18 +155,21 @@ fn screen_tiles_list_what_the_twin_lists() {
         (SMALL.to_owned(), vec![[1.0; 3]]),
     ] {
         let plan = plan(&settings, &[set_of(positions)], Primary::Discs);
-        let mut renderer = Renderer::new(&bench.device, &plan, &Unwatched).expect("builds");
-        renderer.frame(&plan, &Unwatched).expect("renders");
-        let lists = renderer.disc_lists().expect("a tile traced by discs");
         let reference = Reference::<f32>::new(&plan, &Unwatched).expect("nobody interrupts");
         let twin = reference.bin_discs(&plan, &plan.tiles()[0]).expect("not too many pairs");
         let mut tiles = vec![[0; 2]; twin.tiles.len()];
-        lists.tiles.read(0, &mut tiles).expect("tiles");
-        let mut read = [lists.pair_count, lists.pair_count].map(|count| vec![0; count as usize]);
-        lists.pairs.keys.read(0, &mut read[0]).expect("keys");
-        lists.pairs.slots.read(0, &mut read[1]).expect("slots");
-        assert_eq!(lists.ranks, twin.ranks);
-        assert!(tiles == twin.tiles && read == [twin.keys, twin.slots], "{settings}");
+        let (ranks, pairs) = bench.with_device(|device| {
+            let mut renderer = Renderer::new(device, &plan, &Unwatched).expect("builds");
+            renderer.frame(&plan, &Unwatched).expect("renders");
+            let lists = renderer.disc_lists().expect("a tile traced by discs");
+            lists.tiles.read(0, &mut tiles).expect("tiles");
+            let mut pairs = [0; 2].map(|_| vec![0; lists.pair_count as usize]);
+            lists.pairs.keys.read(0, &mut pairs[0]).expect("keys");
+            lists.pairs.slots.read(0, &mut pairs[1]).expect("slots");
+            (lists.ranks, pairs)
+        });
+        assert_eq!(ranks, twin.ranks);
+        assert!(tiles == twin.tiles && pairs == [twin.keys, twin.slots], "{settings}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! The harness of the end-to-end tests.
 //!
 //! Every device that it opens has the validation layer on, synchronisation validation included, and
-//! [`Bench::drop`] fails the test on any message.
+//! dropping the last [`Bench`] fails the test on any message.
 #![forbid(unsafe_code)]
 #![allow(
     clippy::expect_used,
@@ -28,10 +28,13 @@ use render::{Records, Renderer};
 use scene::{Scene, Up};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, PoisonError};
 
-/// Whether the device of this process is another than lavapipe, which gives the same bits as the CPU: so it
-/// was measured. Others may contract or reorder, and differ in the last of them.
+/// Devices that give the same bits as the CPU, by a part of their names: so it was measured (docs/testing.md). Others
+/// may contract or reorder, and differ in the last of them.
+const EXACT: [&str; 2] = ["llvmpipe", "SwiftShader Device (Subzero)"];
+
+/// Whether the device of this process is none of these.
 static IS_OTHER: AtomicBool = AtomicBool::new(false);
 
 /// Whether pictures of the device are the CPU's to the bit. Meaningful once a [`Bench`] is open.
@@ -43,18 +46,32 @@ pub fn is_exact() -> bool {
 /// A device under validation, which the tests of a process share while any of them uses it: it keeps its
 /// pipelines, which some drivers take minutes for.
 pub struct Bench {
-    /// The device that a user would get.
-    pub device: Arc<Device>,
-    _watched: Arc<Watched>,
+    device: Arc<Device>,
+    _user: User,
 }
 
-static SHARED: Mutex<Weak<Watched>> = Mutex::new(Weak::new());
+/// What tests share, and how many of them do. Locked while it opens and while it closes, so that no instance
+/// is made while another is being destroyed.
+static SHARED: Mutex<Shared> = Mutex::new(Shared { watched: None, users: 0 });
+
+struct Shared {
+    watched: Option<Watched>,
+    users: usize,
+}
+
+/// Held by the one test whose turn at the device it is.
+static TURN: Mutex<()> = Mutex::new(());
+
+/// One that shares, counted.
+struct User;
 
 /// Looks at the validation layer's messages when the last test lets go of it.
 struct Watched {
     /// `None` once it is destroyed.
     device: Option<Arc<Device>>,
     instance: Arc<Instance>,
+    /// Kept until the process ends, which nothing looks at: lavapipe tells of what outlives a device.
+    is_slow: bool,
 }
 
 impl Bench {
@@ -62,13 +79,18 @@ impl Bench {
     #[must_use]
     pub fn open() -> Self {
         let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
-        let watched = shared.upgrade().unwrap_or_else(|| {
-            let watched = Arc::new(Watched::open());
-            *shared = Arc::downgrade(&watched);
-            watched
-        });
+        let watched = shared.watched.get_or_insert_with(Watched::open);
         let device = watched.device.clone().expect("a device until the last test ends");
-        Self { device, _watched: watched }
+        shared.users += 1;
+        Self { device, _user: User }
+    }
+
+    /// Runs work on the device that a user would get, one test's at a time: the queue would do no more, and
+    /// the validation layer (1.3.239, `vkDestroyCommandPool` on two threads) has crashed where recorders of two
+    /// tests ended together. Work must not ask for another turn.
+    pub fn with_device<T>(&self, work: impl FnOnce(&Arc<Device>) -> T) -> T {
+        let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        work(&self.device)
     }
 
     /// Builds and traces a plan on the device.
@@ -80,26 +102,29 @@ impl Bench {
     /// The same with a given way to read polynomials.
     #[must_use]
     pub fn render_with(&self, plan: &Plan, records: Records) -> Rendered {
-        let mut renderer =
-            Renderer::with_records(&self.device, plan, records, &Unwatched).expect("builds");
-        let (picture, stats) = renderer.frame(plan, &Unwatched).expect("renders");
-        let surfaces = renderer.surfaces();
-        let mut polynomials =
-            vec![<layout::Polynomial as bytemuck::Zeroable>::zeroed(); plan.cloud.points.len()];
-        surfaces.polynomials.read(0, &mut polynomials).expect("polynomials");
-        let mut cells = vec![[0u32; 2]; surfaces.grid.cell_count() as usize];
-        surfaces.cells.read(0, &mut cells).expect("cells");
-        let listed = cells.iter().map(|range| range[1]).max().unwrap_or(0);
-        let mut slots = vec![0u32; listed as usize];
-        surfaces.slots.read(0, &mut slots).expect("slots");
-        Rendered {
-            polynomials,
-            cells,
-            slots,
-            passes: stats.passes,
-            tests: picture.tests,
-            film: picture.finish(),
-        }
+        self.with_device(|device| rendered(device, plan, records))
+    }
+}
+
+fn rendered(device: &Arc<Device>, plan: &Plan, records: Records) -> Rendered {
+    let mut renderer = Renderer::with_records(device, plan, records, &Unwatched).expect("builds");
+    let (picture, stats) = renderer.frame(plan, &Unwatched).expect("renders");
+    let surfaces = renderer.surfaces();
+    let mut polynomials =
+        vec![<layout::Polynomial as bytemuck::Zeroable>::zeroed(); plan.cloud.points.len()];
+    surfaces.polynomials.read(0, &mut polynomials).expect("polynomials");
+    let mut cells = vec![[0u32; 2]; surfaces.grid.cell_count() as usize];
+    surfaces.cells.read(0, &mut cells).expect("cells");
+    let listed = cells.iter().map(|range| range[1]).max().unwrap_or(0);
+    let mut slots = vec![0u32; listed as usize];
+    surfaces.slots.read(0, &mut slots).expect("slots");
+    Rendered {
+        polynomials,
+        cells,
+        slots,
+        passes: stats.passes,
+        tests: picture.tests,
+        film: picture.finish(),
     }
 }
 
@@ -110,10 +135,34 @@ impl Watched {
         });
         let device = Device::open(&instance, &DeviceChoice::Default).expect("a usable device");
         let name = &device.info().name;
-        if !name.contains("llvmpipe") && !IS_OTHER.swap(true, Ordering::Relaxed) {
+        let is_other = !EXACT.iter().any(|exact| name.contains(exact));
+        if is_other && !IS_OTHER.swap(true, Ordering::Relaxed) {
             said(&format!("on {name}, with tolerances instead of bits (docs/testing.md)"));
         }
-        Self { device: Some(device), instance }
+        let is_slow = !name.contains("llvmpipe");
+        Self { device: Some(device), instance, is_slow }
+    }
+
+    fn assert_silence(&self) {
+        let messages = self.instance.validation_messages();
+        if !std::thread::panicking() {
+            assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
+        }
+    }
+}
+
+impl Drop for User {
+    fn drop(&mut self) {
+        let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+        shared.users -= 1;
+        if shared.users > 0 {
+            return;
+        }
+        match &shared.watched {
+            // It took minutes to make its pipelines, and the next test wants them.
+            Some(watched) if watched.is_slow => watched.assert_silence(),
+            _ => drop(shared.watched.take()),
+        }
     }
 }
 
@@ -121,10 +170,7 @@ impl Drop for Watched {
     fn drop(&mut self) {
         // The layer tells of objects that outlive their device.
         drop(self.device.take());
-        let messages = self.instance.validation_messages();
-        if !std::thread::panicking() {
-            assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
-        }
+        self.assert_silence();
     }
 }
 
