@@ -203,7 +203,17 @@ impl Instance {
         unsafe { self.raw.get_physical_device_properties2(raw, &mut all) };
         let name = driver.driver_name_as_c_str().unwrap_or(c"").to_string_lossy();
         let info = driver.driver_info_as_c_str().unwrap_or(c"").to_string_lossy();
-        format!("{name} {info}").trim().to_owned()
+        if !info.is_empty() {
+            return format!("{name} {info}").trim().to_owned();
+        }
+        // SwiftShader has no words for its version.
+        let version = properties.driver_version;
+        let [major, minor, patch] = [
+            vk::api_version_major(version),
+            vk::api_version_minor(version),
+            vk::api_version_patch(version),
+        ];
+        format!("{name} {major}.{minor}.{patch}").trim().to_owned()
     }
 
     pub(crate) fn device_extensions(
