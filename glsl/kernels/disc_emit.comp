@@ -4,7 +4,7 @@
 //         offsets          first pair of each point, by slot
 // writes  keys             the screen tile, and below it the rank of the ball's nearest distance
 //         slots            the point
-// runs    one invocation per pair, so that one huge disc is no long loop
+// runs    one invocation per point; a disc covers the 16 384 screen tiles of a tile at most
 // twin    crates/reference/src/disc_bin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -32,23 +32,22 @@ layout(std430, binding = DISC_SLOTS) writeonly buffer Slots { uint slots[]; };
 layout(push_constant) uniform Push { DiscParams params; };
 
 void main() {
-    uint pair = list_index();
-    if (pair >= params.pair_count) return;
-    uint low = 0u; // the last point whose first pair is not behind this one
-    uint high = params.point_count;
-    while (high - low > 1u) {
-        uint middle = (low + high) / 2u;
-        bool before = offset_of(middle) <= pair;
-        low = before ? middle : low;
-        high = before ? high : middle;
-    }
-    vec4 ball = center_trust_of(low);
+    uint slot = list_index();
+    if (slot >= params.point_count) return;
+    vec4 ball = center_trust_of(slot);
     vec3 from_eye = ball.xyz - params.camera.eye;
     TileSpan span = disc_tiles(params.camera, from_eye, ball.w);
-    uint nth = pair - offset_of(low);
-    uvec2 tile = span.low + uvec2(nth % span.extent.x, nth / span.extent.x);
     float nearest = sqrt(dot3(from_eye, from_eye)) - disc_radius(from_eye, ball.w);
-    uint id = tile.y * screen_tiles(params.camera.tile_size).x + tile.x;
-    keys[pair] = (id << params.ranks.bits) | depth_rank(params.ranks, nearest);
-    slots[pair] = low;
+    uint rank = depth_rank(params.ranks, nearest);
+    uint across = screen_tiles(params.camera.tile_size).x;
+    uint first = offset_of(slot);
+    uint count = span.extent.x * span.extent.y;
+    uvec2 tile = uvec2(0u);
+    for (uint i = 0u; i < count; ++i) {
+        uint id = (span.low.y + tile.y) * across + (span.low.x + tile.x);
+        keys[first + i] = (id << params.ranks.bits) | rank;
+        slots[first + i] = slot;
+        bool wraps = tile.x + 1u == span.extent.x;
+        tile = wraps ? uvec2(0u, tile.y + 1u) : uvec2(tile.x + 1u, tile.y);
+    }
 }

@@ -25,6 +25,7 @@
 #include "layout.glsl"
 #include "math.glsl"
 #include "grid.glsl"
+#include "scene.glsl"
 #include "polynomial.glsl"
 #include "state.glsl"
 #include "records.glsl"
@@ -74,10 +75,11 @@ void main() {
         uint first = next & ~3u; // slots are read four at a time
         uint end = min(range.y, first + BATCH);
         uint candidates = 0u;
-        bool everything = ray.cells == 0u || ray.after > 0.0;
+        bool later = scene_has(SCENE_REFINES) && ray.after > 0.0;
+        bool everything = ray.cells == 0u || later;
         vec2 within = way_through(grid, at, o, d);
         within.x = everything ? -NO_HIT : within.x;
-        within.y = ray.after > 0.0 ? NO_HIT : within.y;
+        within.y = later ? NO_HIT : within.y;
         for (uint at_four = first; at_four < end; at_four += 4u) {
             uvec4 four = four_slots_at(at_four);
             uint near = enters_trust_ball(o, d, center_trust_of(four.x), ray.hit_t, within) ? 1u : 0u;
@@ -100,11 +102,11 @@ void main() {
 #endif
             float t = intersect(o, d, p, from);
 #ifdef LEAVES
-            t = p.object == params.passed ? NO_HIT : t;
+            if (scene_has(SCENE_VOLUMES)) t = p.object == params.passed ? NO_HIT : t;
 #endif
             bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);
             bool nearer = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);
-            bool better = nearer && t > ray.after;
+            bool better = nearer && (!scene_has(SCENE_REFINES) || t > ray.after);
             ray.hit_t = better ? t : ray.hit_t;
             ray.hit_slot = better ? slot : ray.hit_slot;
             hit_object = better ? p.object : hit_object;
@@ -123,10 +125,10 @@ void main() {
         // On to the next cell that holds points, once this one is exhausted.
         bool seeking = alive && next == range.y;
         while (seeking && cells_left > 0u && work_left > 0u) {
-            uint around = empty_around(range);
+            uint around = scene_has(SCENE_SKIPS) ? empty_around(range) : 0u;
             vec3 exits = crossings(grid, at, around, o, d);
             bool ends = ray.hit_t <= nearest_crossing(exits);
-            at = next_cell(grid, at, around, exits, o, d);
+            at = next_cell(grid, at, around, scene_has(SCENE_SKIPS), exits, o, d);
             alive = !ends && in_grid(grid, at);
             cell = alive ? cell_id(grid, at) : NONE;
             range = alive ? range_of(cell) : uvec2(0u);

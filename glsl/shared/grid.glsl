@@ -94,11 +94,12 @@ uint empty_around(uvec2 range) {
 
 // The next cell behind the face at the nearest of the crossings t of the box of cells `around` the cell (ties:
 // the lower axis); outside of the grid, one past some axis. Along the other axes it is where the ray is
-// then, in the box, and never behind where it was.
-uvec3 next_cell(GridInfo grid, uvec3 cell, uint around, vec3 t, vec3 o, vec3 d) {
-    ivec3 reached = ivec3(cell_of(grid, o + nearest_crossing(t) * d));
-    ivec3 ahead = ivec3(greaterThan(d, vec3(0.0)));
+// then, in the box, and never behind where it was. Unless `skips`, the box is the cell alone.
+uvec3 next_cell(GridInfo grid, uvec3 cell, uint around, bool skips, vec3 t, vec3 o, vec3 d) {
     ivec3 from = ivec3(cell);
+    ivec3 reached = from;
+    if (skips) reached = ivec3(cell_of(grid, o + nearest_crossing(t) * d));
+    ivec3 ahead = ivec3(greaterThan(d, vec3(0.0)));
     ivec3 low = from - (1 - ahead) * int(around);
     ivec3 high = from + ahead * int(around);
     bool along_x = t.x <= t.y && t.x <= t.z;

@@ -172,6 +172,7 @@
 #define SCENE_CHANCE 16384  // decides whether glass reflects or refracts
 #define SCENE_VOLUMES 32768 // paths carry what volumes emit
 #define SCENE_MANY_LIGHTS 65536 // more than one
+#define SCENE_SKIPS 131072  // rays leave empty cells together
 
 // What transparent pictures leave the background out of.
 #define TRANSPARENT_CAMERA 1 // camera rays

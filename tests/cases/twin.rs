@@ -228,6 +228,22 @@ fn a_cell_with_too_many_points_for_one_pass_is_finished_in_the_next() {
     assert_same_film("one cell", &one_cell.film, &render_twin(&plan).film);
 }
 
+/// A large grid, whose empty cells say how far they are from others: camera rays, and those towards lights.
+#[test]
+fn rays_that_leave_empty_cells_together_are_the_same_to_the_bit() {
+    let mut plan = plan_of(&format!("{SMALL}\n{LIGHTS}"), &[set_of(fibonacci_sphere(10_000))]);
+    let stepping = Bench::open().render(&plan);
+    plan.grid_resolution = 80;
+    plan.diagnostics = Diagnostic::ALL.to_vec();
+    let skipping = Bench::open().render(&plan);
+    assert_same_bits("skipping", &skipping, &render_twin(&plan));
+    let distances =
+        skipping.cells.iter().filter(|range| range[0] == range[1]).map(|range| range[0]);
+    assert_eq!((distances.clone().min(), distances.max()), (Some(1), Some(4)));
+    plan.diagnostics.clear();
+    assert_same_film("skipping", &stepping.film, &Bench::open().render(&plan).film);
+}
+
 /// However little a ray may do in a pass, it goes on in the next where it stopped.
 #[test]
 fn any_budget_gives_the_same_bytes() {

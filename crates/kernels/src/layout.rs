@@ -318,6 +318,8 @@ constants! {
     SCENE_VOLUMES = 32768;
     /// More than one light.
     SCENE_MANY_LIGHTS = 65536;
+    /// Rays leave empty cells together.
+    SCENE_SKIPS = 131_072;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
     VOLUME_SHEPARD = 0;
     /// [`VolumeInfo::kernel`] of the weighted sum.

@@ -23,6 +23,15 @@ const ALWAYS_ALLOWED: f64 = 65_536.0;
 const CELLS_ALLOWED: f64 = 16_000_000.0;
 const PAIRS_ALLOWED: f64 = 32_000_000.0;
 
+/// Cells from which on it pays that rays leave empty ones together: the search for distances, and more work a step.
+const SKIPPING_CELLS: u32 = 150_000;
+
+/// Whether empty cells of a grid tell how far they are from others.
+#[must_use]
+pub fn skips_cells(grid: &GridInfo) -> bool {
+    grid.cell_count() >= SKIPPING_CELLS
+}
+
 const EMPTY: GridInfo =
     GridInfo { origin: [-0.5; 3], edge: 1.0, resolution: [1; 3], inverse_edge: 1.0 };
 

@@ -7,12 +7,13 @@ use crate::polynomial::Polynomial;
 use crate::real::Real;
 use crate::refine::PointCells;
 use kernels::layout::{GridInfo, MOST_SKIPPED};
+use points::skips_cells;
 
 /// The points of each cell.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CellLists {
-    /// First and past-the-last entry of each cell in `slots`; of an empty cell both are its distance, in cells along
-    /// any axis, to the next that is not, at most `MOST_SKIPPED`.
+    /// First and past-the-last entry of each cell in `slots`; of an empty cell both are 0, or, in
+    /// large grids, its distance, in cells along any axis, to the next that is not, at most `MOST_SKIPPED`.
     pub cells: Vec<[u32; 2]>,
     /// Slots, cell after cell, in the order of (object, place in the file) within a cell.
     pub slots: Vec<u32>,
@@ -70,7 +71,9 @@ pub fn build_grid<R: Real>(
         }
         range[1] = at as u32 + 1;
     }
-    skip_cells(info.resolution, &mut cells);
+    if skips_cells(info) {
+        skip_cells(info.resolution, &mut cells);
+    }
     CellLists { cells, slots: pairs.into_iter().map(|pair| pair.1).collect() }
 }
 

@@ -22,11 +22,11 @@ use crate::volumes::VolumeBuffers;
 use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder, Timings};
 use kernels::layout::{
-    FilmPixel, Hit, NONE, Path, Polynomial, TraceParams, WAVE_SHARES_PATH, WaveParams,
+    FilmPixel, Hit, NONE, Path, Polynomial, SCENE_SKIPS, TraceParams, WAVE_SHARES_PATH, WaveParams,
 };
 use plan::{MAX_DISC_PAIRS, Picture, Plan, Rays, Window, camera_wave};
-use points::Watch;
 use points::device::Surfaces;
+use points::{Watch, skips_cells};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -158,7 +158,7 @@ impl Passes {
             camera_rays: CameraRays::new(device, form)?,
             camera_trace: CameraTrace::new(device, scene)?,
             disc_trace: DiscTrace::new(device, form)?,
-            grid_trace: GridTrace::new(device, form)?,
+            grid_trace: GridTrace::new(device, form, scene)?,
             surface_hit: SurfaceHit::new(device, form, scene)?,
             refine: Refine::new(device, form)?,
             classify: Classify::new(device, form, scene)?,
@@ -237,6 +237,8 @@ impl Renderer {
         let longest = records.max(lists).max(u64::from(rays) * TEXELS_A_RAY);
         let form = RayLoop::of(plan.ray_loop, device, longest);
         let live_rays = || Buffer::new(device, "list of live rays", u64::from(rays) * 4);
+        let skips = if skips_cells(&surfaces.grid) { SCENE_SKIPS } else { 0 };
+        let scene = plan.scene_bits() | skips;
         let shadows = if plan.lights.is_empty() { 1 } else { rays };
         Ok(Self {
             surfaces,
@@ -261,7 +263,7 @@ impl Renderer {
             ends_at_once: true,
             asked: Asked::default(),
             discs: Discs::new(device, plan.cloud.points.len() as u32, form)?,
-            passes: Passes::new(device, form, plan.scene_bits())?,
+            passes: Passes::new(device, form, scene)?,
             recorder: Recorder::new(device)?,
             budget: Budget::of(device.info()),
             device: Arc::clone(device),

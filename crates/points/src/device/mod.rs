@@ -18,7 +18,7 @@ pub use fitting::nearest_others;
 pub use scan::Scan;
 pub use sort::{Pairs, Sort, SortSpace};
 
-use crate::{Cloud, Watch, plan_grid};
+use crate::{Cloud, Watch, plan_grid, skips_cells};
 use fitting::{Fitted, fit_all};
 use gpu::{Buffer, Device, GpuError};
 use grid_build::{GridBuild, GridBuildIo};
@@ -173,7 +173,9 @@ impl Surfaces {
         let point_cells = if refines { build.list_points(&mut work, &io)? } else { None };
         clip::clip_balls(device, &mut work, &polynomials, &rims.clips(&cloud.points, &outcomes))?;
         let lists = build.run(&mut work, &io)?;
-        skip::skip_cells(device, &mut work, &grid, &grid_info, &lists.cells)?;
+        if skips_cells(&grid) {
+            skip::skip_cells(device, &mut work, &grid, &grid_info, &lists.cells)?;
+        }
         watch.done(1);
         Ok(Self {
             polynomials,

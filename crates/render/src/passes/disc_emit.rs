@@ -43,6 +43,6 @@ impl DiscEmit {
             .buffer(DISC_KEYS, &pairs.keys)
             .buffer(DISC_SLOTS, &pairs.slots)
             .push(params)
-            .dispatch(line(params.pair_count));
+            .dispatch(line(params.point_count));
     }
 }

@@ -41,7 +41,7 @@ pub(crate) struct GridTrace {
 impl GridTrace {
     pub const NAME: &'static str = "grid_trace";
 
-    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, GpuError> {
         let modules = [
             form.module(spirv::grid_trace, spirv::grid_trace_queue),
             form.module(spirv::grid_trace_leaving, spirv::grid_trace_leaving_queue),
@@ -51,7 +51,9 @@ impl GridTrace {
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         bindings.extend(surface_lists(form));
         let params = size_of::<TraceParams>();
-        let kernel = |module: &[u32]| Kernel::new(device, Self::NAME, module, &bindings, params);
+        let kernel = |module: &[u32]| {
+            Kernel::specialized(device, Self::NAME, module, &bindings, params, Some(scene))
+        };
         Ok(Self { from_camera: kernel(&modules[0])?, leaving: kernel(&modules[1])? })
     }
 
