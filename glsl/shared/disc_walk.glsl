@@ -17,7 +17,7 @@
 #ifdef QUEUE
 layout(binding = DISC_RANGES_IN) uniform usamplerBuffer disc_ranges; // two values a tile
 layout(binding = DISC_KEYS_IN) uniform usamplerBuffer disc_keys; // one each
-layout(binding = DISC_SLOTS_IN) uniform usamplerBuffer disc_slots;
+layout(binding = DISC_SLOTS_IN) uniform usamplerBuffer disc_slots; // four
 
 uvec2 disc_range_of(uint tile) {
     return texelFetch(disc_ranges, int(tile)).xy;
@@ -28,7 +28,11 @@ uint disc_key_at(uint place) {
 }
 
 uint disc_slot_at(uint place) {
-    return texelFetch(disc_slots, int(place)).x;
+    return texelFetch(disc_slots, int(place / 4u))[place & 3u];
+}
+
+uvec4 four_disc_slots_at(uint place) {
+    return texelFetch(disc_slots, int(place / 4u));
 }
 #else
 layout(std430, binding = DISC_RANGES_IN) readonly buffer DiscRanges { uvec2 disc_ranges[]; };
@@ -45,6 +49,11 @@ uint disc_key_at(uint place) {
 
 uint disc_slot_at(uint place) {
     return disc_slots[place];
+}
+
+// Those from a multiple of four on; the list has room for four.
+uvec4 four_disc_slots_at(uint place) {
+    return uvec4(disc_slots[place], disc_slots[place + 1u], disc_slots[place + 2u], disc_slots[place + 3u]);
 }
 #endif
 
@@ -65,15 +74,21 @@ void walk_discs(inout Ray ray, uvec2 range, DepthRanks ranks, uint work) {
     }
 
     while (alive && work_left > 0u) {
-        uint count = min(range.y - next, BATCH);
+        uint first = next & ~3u; // slots are read four at a time
+        uint end = min(range.y, first + BATCH);
         uint candidates = 0u;
-        for (uint j = 0u; j < count; ++j) {
-            bool near = near_trust_ball(o, d, center_trust_of(disc_slot_at(next + j)), ray.hit_t);
-            candidates |= near ? 1u << j : 0u;
+        for (uint at_four = first; at_four < end; at_four += 4u) {
+            uvec4 four = four_disc_slots_at(at_four);
+            uint near = near_trust_ball(o, d, center_trust_of(four.x), ray.hit_t) ? 1u : 0u;
+            near |= near_trust_ball(o, d, center_trust_of(four.y), ray.hit_t) ? 2u : 0u;
+            near |= near_trust_ball(o, d, center_trust_of(four.z), ray.hit_t) ? 4u : 0u;
+            near |= near_trust_ball(o, d, center_trust_of(four.w), ray.hit_t) ? 8u : 0u;
+            candidates |= near << (at_four - first);
         }
+        candidates &= (~0u << (next - first)) & (~0u >> (first + BATCH - end)); // next < end
         uint solved = 0u;
         while (candidates != 0u) {
-            uint slot = disc_slot_at(next + uint(findLSB(candidates)));
+            uint slot = disc_slot_at(first + uint(findLSB(candidates)));
             candidates &= candidates - 1u;
             Polynomial p = polynomial_of(slot);
             float t = intersect(o, d, p, 0.0);
@@ -86,9 +101,9 @@ void walk_discs(inout Ray ray, uvec2 range, DepthRanks ranks, uint work) {
             hit_index = better ? p.index : hit_index;
             ++solved;
         }
-        next += count;
-        ray.tests += count;
-        work_left -= min(work_left, count + solved + 1u);
+        ray.tests += end - next;
+        next = end;
+        work_left -= min(work_left, (end - first) / 4u + solved + 2u);
         bool more = next < range.y;
         uint rank = disc_key_at(more ? next : range.x) & rank_mask;
         alive = more && rank <= depth_rank(ranks, ray.hit_t);

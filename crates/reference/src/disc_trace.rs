@@ -21,7 +21,8 @@ pub fn disc_trace<R: Real>(
     let missed = std::mem::replace(&mut ray.cell, NONE) == NONE;
     let mut next = if missed { end } else { first };
     while next < end {
-        let batch = &lists.slots[next..end.min(next + BATCH)];
+        // Slots are read four at a time.
+        let batch = &lists.slots[next..end.min(next / 4 * 4 + BATCH)];
         test_batch(ray, batch, polynomials, None, None);
         next += batch.len();
         let rank_mask = (1 << lists.ranks.bits) - 1;

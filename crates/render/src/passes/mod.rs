@@ -74,7 +74,7 @@ fn disc_lists(form: RayLoop) -> [(u32, Binding); 3] {
     [
         (DISC_RANGES_IN, form.read(Texel::Two)),
         (DISC_KEYS_IN, form.read(Texel::One)),
-        (DISC_SLOTS_IN, form.read(Texel::One)),
+        (DISC_SLOTS_IN, form.read(Texel::Four)),
     ]
 }
 
