@@ -164,6 +164,11 @@ fn every_scene_is_as_its_golden_image() {
             let same_bits = golden.iter().zip(&found).all(|(a, b)| same(a, b));
             same_bits || (!is_exact() && flip(golden, &found).mean <= MOST_FLIP)
         });
+        if equal && !is_exact() {
+            let near =
+                Difference { name: name.clone(), golden: golden.clone(), found: found.clone() };
+            said(&format!("NEAR: {}", near.words()));
+        }
         if !equal {
             differences.push(Difference { name, golden, found });
         }

@@ -2,7 +2,7 @@
 //! which moves a surface by some last bits, and lets a ray in a hundred or two take another way at an outline, a
 //! seam between polynomials, or inside of glass.
 
-use crate::Rendered;
+use crate::{Rendered, said};
 use film::Film;
 use kernels::layout::Polynomial;
 
@@ -26,19 +26,27 @@ pub(crate) fn assert_near(name: &str, a: &Rendered, b: &Rendered) {
 pub(crate) fn assert_near_films(name: &str, a: &Film, b: &Film) {
     let pixels = a.color.len();
     let other = |differ: &dyn Fn(usize) -> bool| (0..pixels).filter(|&at| differ(at)).count();
-    let planes: [(&str, &dyn Fn(usize) -> bool); 5] = [
+    assert_eq!(a.channel_alpha.is_some(), b.channel_alpha.is_some(), "{name}: AR AG AB");
+    let alphas = a.channel_alpha.as_ref().zip(b.channel_alpha.as_ref());
+    let planes: [(&str, &dyn Fn(usize) -> bool); 6] = [
         ("object", &|at| a.object[at] != b.object[at]),
         ("RGBA", &|at| far(&a.color[at], &b.color[at])),
         ("Z", &|at| far(&[a.depth[at]], &[b.depth[at]])),
         ("P", &|at| far(&a.position[at], &b.position[at])),
         ("N", &|at| far(&a.normal[at], &b.normal[at])),
+        ("AR AG AB", &|at| alphas.is_some_and(|(a, b)| far(&a[at], &b[at]))),
     ];
     for (plane, differ) in planes {
         assert_share(name, plane, other(differ), pixels, OTHER_PIXELS);
     }
 }
 
+/// Says the share, where it is any: what a driver's tolerances should be is read from there.
 fn assert_share(name: &str, what: &str, other: usize, all: usize, most: f64) {
+    if other > 0 {
+        let percent = 100.0 * other as f64 / all as f64;
+        said(&format!("NEAR: {name}: {what}: {other} of {all} ({percent:.2} %) are others"));
+    }
     // A few in a small picture are no share.
     let allowed = (most * all as f64).ceil().max(4.0);
     assert!(
