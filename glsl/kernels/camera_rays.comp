@@ -15,7 +15,6 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_WRITES
 #include "layout.glsl"
-#include "math.glsl"
 #include "sampler.glsl"
 #include "grid.glsl"
 #include "state.glsl"
@@ -27,6 +26,7 @@ layout(std430, binding = CAMERA_PATH) readonly buffer Start { Path start; };
 layout(std430, binding = WAVE_PATHS) writeonly buffer Paths { Path paths[]; };
 layout(std430, binding = CAMERA_FILTER) readonly buffer Filter { float filter_steps[]; };
 layout(push_constant) uniform Push { CameraParams params; };
+#include "camera.glsl"
 
 float filter_place(float u) {
     float at = u * float(FILTER_INTERVALS);
@@ -49,13 +49,11 @@ void main() {
         u = sample_2d(at, params.sample_index, params.seed, uint(SAMPLE_LENS));
         lens = params.lens_radius * concentric_disc(u);
     }
-    vec2 center = vec2(at) + 0.5;
-    vec2 place = vec2(((center.x - params.half_width) + offset.x) * params.scale,
-                      ((params.half_height - center.y) - offset.y) * params.scale);
+    vec2 place = place_in_view(at, offset);
     bool parallel = params.projection == ORTHOGRAPHIC;
     vec2 slope = (parallel ? vec2(0.0) : place) - lens / params.focus;
     vec2 start = (parallel ? place : vec2(0.0)) + lens;
-    vec3 direction = normalize3((params.forward + slope.x * params.right) + slope.y * params.up);
+    vec3 direction = camera_direction(slope);
     bool from_eye = start.x == 0.0 && start.y == 0.0;
     vec3 origin = from_eye ? params.eye : (params.eye + start.x * params.right) + start.y * params.up;
     uint cell = enter_grid(grid, origin, direction);

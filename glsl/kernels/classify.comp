@@ -1,13 +1,14 @@
 // classify: what becomes of each ray of a wave that has met a surface, or nothing (section 5 of the
 // paper).
 //
-// reads   the ray state, objects, polynomials
+// reads   the ray state, objects, polynomials, paths
 //         hits             accepted, or none
 //         images, texels   the environment
-// writes  paths            absorption on the way is taken from their throughput
+// writes  written_paths    the same paths: absorption on the way is taken from their throughput
 //         film             every pixel in the first wave; after that, the background where a ray ends
-//         lit              1 for a ray that hit a diffuse surface
-//         next             how many rays of the next wave this one makes
+//         lit, lit_hits    marks of rays that hit a diffuse surface, if there is light, and where
+//         scattering, next_marks   marks of those that hit another, and how many rays each makes; all marks must
+//                          be zero before
 // runs    one invocation per ray of the wave
 // twin    crates/reference/src/wave.rs
 #version 460
@@ -15,71 +16,78 @@
 #define STATE_READS
 #include "layout.glsl"
 #include "environment.glsl"
+#include "hits.glsl"
 #include "math.glsl"
 #include "state.glsl"
+#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
-layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
-layout(std430, binding = WAVE_PATHS) buffer Paths { Path paths[]; };
-layout(std430, binding = WAVE_LIT) writeonly buffer Lit { uint lit[]; };
-layout(std430, binding = WAVE_NEXT) writeonly buffer Next { uint next[]; };
+layout(std430, binding = WAVE_NEXT_PATHS) writeonly buffer WrittenPaths { Path written_paths[]; };
+layout(std430, binding = WAVE_LIT_HITS) writeonly buffer LitHits { LitHit lit_hits[]; };
 layout(push_constant) uniform Push { WaveParams params; };
+#include "path.glsl"
 #include "media.glsl"
 #include "film.glsl"
-
-#define INFINITE_DEPTH uintBitsToFloat(0x7f800000u)
+#include "marks.glsl"
 
 // Rays that a ray makes at a surface that is not diffuse.
-uint rays_behind(uint ray, uint object) {
-    bool spent = paths[ray].bounces >= params.max_bounces;
-    if (objects[object].material != MATERIAL_GLASS) return spent ? 0u : 1u;
-    Crossing crossing = crossing_of(ray, object);
+uint rays_behind(Path path, Media media, uint object) {
+    bool spent = path.bounces >= params.max_bounces;
+    if (object_at(object).material != MATERIAL_GLASS) return spent ? 0u : 1u;
+    Crossing crossing = crossing_of(media, object);
     bool passes = crossing.before == crossing.after;
-    uint count = splits(crossing, paths[ray].channels) ? 3u : 1u;
-    return passes ? (paths[ray].crossings < MOST_CROSSINGS ? 1u : 0u) : (spent ? 0u : count);
+    uint count = splits(crossing, path.channels) ? 3u : 1u;
+    return passes ? (path.crossings < MOST_CROSSINGS ? 1u : 0u) : (spent ? 0u : count);
 }
 
 void main() {
     uint at = list_index();
     if (at >= params.ray_count) return;
-    uint pixel = paths[at].pixel;
-    if (pixel == NONE) {
-        lit[at] = 0u;
-        next[at] = 0u;
-        return;
-    }
+    Path path = path_of(at);
+    uint pixel = path.pixel;
+    if (pixel == NONE) return;
     Ray ray = load_ray(at);
-    Hit hit = hits[at];
+    Hit hit = hit_of(at);
     bool found = ray.hit_slot != NONE;
-    uint object = found ? polynomials[ray.hit_slot].object : NONE;
-    vec3 throughput = paths[at].throughput;
-    if (paths[at].media_count > 0u) {
-        throughput *= transmittance(medium_without(at, NONE), found ? hit.t : NO_HIT);
-        paths[at].throughput = throughput;
+    uint object = found ? object_of(ray.hit_slot) : NONE;
+    vec3 throughput = path.throughput;
+    Media media = Media(at, path.media_count);
+    if (scene_has(SCENE_ABSORBS)) {
+        if (media.count > 0u) {
+            throughput *= transmittance(medium_without(media, NONE), found ? hit.t : NO_HIT);
+            written_paths[at].throughput = throughput;
+        }
     }
-    bool is_diffuse = found && objects[object].material == MATERIAL_DIFFUSE;
-    lit[at] = is_diffuse ? 1u : 0u;
-    next[at] = found && !is_diffuse ? rays_behind(at, object) : 0u;
+    bool is_diffuse = found && (!scene_has(SCENE_SCATTERS) || object_at(object).material == MATERIAL_DIFFUSE);
+    bool is_lit = is_diffuse && scene_has(SCENE_LIGHTS);
+    if (scene_has(SCENE_LIGHTS) && scene_has(SCENE_DIFFUSE)) {
+        if (is_lit) {
+            lit_hits[at].position = hit.position;
+            lit_hits[at].slot = ray.hit_slot;
+            lit_hits[at].normal = hit.normal;
+            mark_lit(at);
+        }
+    }
+    if (scene_has(SCENE_SCATTERS)) {
+        if (found && !is_diffuse) mark_scattering(at, rays_behind(path, media, object));
+    }
 
-    bool from_camera = params.wave == 0u;
-    uint channels = paths[at].channels;
+    bool from_camera = (params.flags & uint(WAVE_FROM_CAMERA)) != 0u;
+    uint channels = path.channels;
     bool left_out = leaves_out(params.transparent, from_camera, channels);
     vec3 alpha = vec3(1.0) - (found || (channels & uint(PATH_REFLECTED)) != 0u ? vec3(0.0) : throughput);
     vec3 background = found || left_out ? vec3(0.0) : throughput * background_at(params.background, ray.direction);
-    vec3 behind = paths[at].emitted + background;
+    vec3 behind = path.emitted + background; // of a diffuse surface, where there is no light
     if (from_camera) {
         float depth = hit.t * dot3(ray.direction, params.forward);
         uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, hit.status >> HIT_TOTAL_SHIFT);
-        film[pixel] = FilmPixel(vec4(found ? vec3(0.0) : behind, found ? 1.0 : paths[at].coverage),
-                                found ? vec4(hit.position, depth) : vec4(0.0, 0.0, 0.0, INFINITE_DEPTH),
-                                found ? vec4(hit.normal, float(object)) : vec4(0.0, 0.0, 0.0, -1.0), counts, alpha, 0u);
+        write_first(pixel, vec4(found && !is_diffuse ? vec3(0.0) : behind, found ? 1.0 : path.coverage), !is_lit, found,
+                    vec4(hit.position, depth), vec4(hit.normal, found ? float(object) : -1.0), counts, alpha);
     } else {
         count_work(pixel, ray.tests, ray.cells);
-        if (!found) write_channels(pixel, channels, behind);
+        if (!found || (is_diffuse && !is_lit)) write_channels(pixel, channels, behind);
         if (!found) write_alpha(pixel, channels, alpha);
     }
 }

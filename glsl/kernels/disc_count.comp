@@ -12,16 +12,16 @@
 #include "layout.glsl"
 #include "disc.glsl"
 #include "index.glsl"
+#include "records.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = DISC_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = DISC_OFFSETS) writeonly buffer Offsets { uint offsets[]; };
 layout(push_constant) uniform Push { DiscParams params; };
 
 void main() {
     uint slot = list_index();
     if (slot >= params.point_count) return;
-    vec4 ball = polynomials[slot].center_trust;
+    vec4 ball = center_trust_of(slot);
     uvec2 extent = disc_tiles(params.camera, ball.xyz - params.camera.eye, ball.w).extent;
     offsets[slot] = extent.x * extent.y;
 }

@@ -2,14 +2,14 @@
 //
 // reads   points           every point of the scene
 //         sizes            h by slot, where params.feature_size asks for it
-//         neighbors        per point of the batch, nearest first, slots; NONE fills up
+//         neighbors        per point of the batch, nearest first, slots; NONE fills up to a multiple of four
 // writes  polynomials      one a point, in world form
 //         outcomes         how each fit ended
 //         rims             of the batch's points, where params.rim_limit asks for them
 // runs    one invocation per point of the batch
 // twin    crates/reference/src/fit_polynomials.rs
 //
-// Lengths are divided by h first. full -> incomplete -> plane -> no surface, each where the one
+// With FEW, for lists of up to 16, which are then read once and kept. Lengths are divided by h first. full -> incomplete -> plane -> no surface, each where the one
 // before is singular.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -20,10 +20,12 @@
 #include "gap.glsl"
 #include "rim.glsl"
 #include "index.glsl"
+#include "cloud.glsl"
+#include "nearest.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = FIT_POINTS) readonly buffer Points { Point points[]; };
-layout(std430, binding = FIT_NEIGHBORS) readonly buffer Neighbors { uint neighbors[]; };
+WORDS(FIT_POINTS, points);
+WORDS(FIT_NEIGHBORS, neighbors); // four slots each
 layout(std430, binding = FIT_POLYNOMIALS) writeonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = FIT_OUTCOMES) writeonly buffer Outcomes { FitOutcome outcomes[]; };
 layout(std430, binding = FIT_SIZES) readonly buffer Sizes { float sizes[]; };
@@ -32,26 +34,35 @@ layout(push_constant) uniform Push { FitParams params; };
 
 #define SMALLEST_FEATURE 1e-15   // h under this: every neighbour lies on the point
 
-vec3 neighbor_offset(uint list, uint j, vec3 center) {
-    return points[neighbors[list + j]].position - center;
+vec3 position_of(uint slot) {
+    return uintBitsToFloat(words_of(points, slot).xyz);
 }
 
-// How many distinct positions the neighbourhood holds, the point included; counted up to 6.
-uint count_distinct(uint list, uint count, vec3 center) {
-    uint distinct = 1u;
-    uint j = 0u;
-    while (j < count && distinct < 6u) {
-        vec3 y = neighbor_offset(list, j, center);
-        bool seen = y == vec3(0.0);
-        uint i = 0u;
-        while (i < j && !seen) {
-            seen = neighbor_offset(list, i, center) == y;
-            ++i;
-        }
-        distinct += seen ? 0u : 1u;
-        ++j;
-    }
-    return distinct;
+uint neighbor(uint list, uint j) {
+    uvec4 four = words_of(neighbors, (list + j) >> 2u);
+    uint low = (j & 1u) != 0u ? four.y : four.x;
+    uint high = (j & 1u) != 0u ? four.w : four.z;
+    return (j & 2u) != 0u ? high : low;
+}
+
+vec3 neighbor_offset(uint list, uint j, vec3 center) {
+    return position_of(neighbor(list, j)) - center;
+}
+
+// Positions that differ, counted up to 6: the first is the point's.
+struct Distinct {
+    uint count;
+    vec3 first, second, third, fourth, fifth;
+};
+
+void count_position(inout Distinct seen, vec3 p) {
+    bool known = p == seen.first || (seen.count > 1u && p == seen.second) || (seen.count > 2u && p == seen.third)
+        || (seen.count > 3u && p == seen.fourth) || (seen.count > 4u && p == seen.fifth) || seen.count > 5u;
+    seen.second = !known && seen.count == 1u ? p : seen.second;
+    seen.third = !known && seen.count == 2u ? p : seen.third;
+    seen.fourth = !known && seen.count == 3u ? p : seen.fourth;
+    seen.fifth = !known && seen.count == 4u ? p : seen.fifth;
+    seen.count += known ? 0u : 1u;
 }
 
 // How far along e, in units of the reach of the neighbours, the surface goes on; no steps: not asked.
@@ -70,39 +81,80 @@ void main() {
     if (i >= params.point_count) return;
     uint slot = params.first_slot + i;
     uint list = (slot - params.first_listed) * params.neighbors;
-    vec3 center = points[slot].position;
+    uvec4 point = words_of(points, slot);
+    vec3 center = uintBitsToFloat(point.xyz);
 
+    Distinct distinct = Distinct(1u, center, center, center, center, center);
+#ifdef FEW
+    uvec4 slots[4];
+#define READ_LIST(j) slots[j] = words_of(neighbors, list / 4u + min(uint(j), params.neighbors / 4u - 1u));
+    FOUR(READ_LIST, 0u)
     uint count = 0u;
-    while (count < params.neighbors && neighbors[list + min(count, params.neighbors - 1u)] != NONE) ++count;
+    vec3 offsets[NEAREST];
+    vec3 farthest = vec3(0.0);
+#define READ_NEIGHBOR(j) { \
+    uint other = slots[(j) / 4u][(j) % 4u]; \
+    bool is_there = j < params.neighbors && other != NONE; \
+    vec3 position = position_of(is_there ? other : slot); \
+    offsets[j] = position - center; \
+    farthest = is_there ? offsets[j] : farthest; \
+    count += is_there ? 1u : 0u; \
+    count_position(distinct, position); \
+}
+    EACH(READ_NEIGHBOR)
+#else
+    uint count = 0u;
+    while (count < params.neighbors && neighbor(list, min(count, params.neighbors - 1u)) != NONE) ++count;
+    uint nearest = 0u;
+    while (nearest < count && distinct.count < 6u) {
+        count_position(distinct, position_of(neighbor(list, nearest)));
+        ++nearest;
+    }
     vec3 farthest = count > 0u ? neighbor_offset(list, max(count, 1u) - 1u, center) : vec3(0.0);
+#endif
     float reach = sqrt(dot3(farthest, farthest));
     float h = params.feature_size > 0.0 ? params.feature_size : reach;
-    if (params.feature_size < 0.0) h = sizes[slot];
+    if (params.feature_size < 0.0) h = sizes[slot - params.bound_from];
     bool spread_out = h > SMALLEST_FEATURE && reach > SMALLEST_FEATURE;
     float inverse_h = 1.0 / (spread_out ? h : 1.0);
-
     float weight_square = params.weight_scale * params.weight_scale;
+
+    // What is done to each neighbour: its offset y from the point, and its weight. Those that are not there
+    // have weight 0.
+#ifdef FEW
+    float weights[NEAREST];
+#define WEIGH(j) { \
+    offsets[j] = offsets[j] * inverse_h; \
+    weights[j] = j < count ? exp_negative(-dot3(offsets[j], offsets[j]) * weight_square) : 0.0; \
+}
+    EACH(WEIGH)
+#define DO(j) { vec3 y = offsets[j]; float weight = weights[j]; STEP }
+#define EACH_NEIGHBOR EACH(DO)
+#else
+#define EACH_NEIGHBOR \
+    for (uint j = 0u; j < count; ++j) { \
+        vec3 y = neighbor_offset(list, j, center) * inverse_h; \
+        float weight = exp_negative(-dot3(y, y) * weight_square); \
+        STEP \
+    }
+#endif
 
     // The point itself is the first term of every sum: weight 1 at the origin.
     float total = 1.0;
     vec3 sum = vec3(0.0);
-    for (uint j = 0u; j < count; ++j) {
-        vec3 y = neighbor_offset(list, j, center) * inverse_h;
-        float weight = exp_negative(-dot3(y, y) * weight_square);
-        total += weight;
-        sum += weight * y;
-    }
+#define STEP total += weight; sum += weight * y;
+    EACH_NEIGHBOR
+#undef STEP
     vec3 mean = sum / total;
     vec3 diagonal = mean * mean;
     vec3 off = vec3(mean.x * mean.y, mean.x * mean.z, mean.y * mean.z);
-    for (uint j = 0u; j < count; ++j) {
-        vec3 y = neighbor_offset(list, j, center) * inverse_h;
-        float weight = exp_negative(-dot3(y, y) * weight_square);
-        vec3 c = y - mean;
-        vec3 wc = weight * c;
-        diagonal += wc * c;
-        off += vec3(wc.x * c.y, wc.x * c.z, wc.y * c.z);
-    }
+#define STEP \
+    vec3 c = y - mean; \
+    vec3 wc = weight * c; \
+    diagonal += wc * c; \
+    off += vec3(wc.x * c.y, wc.x * c.z, wc.y * c.z);
+    EACH_NEIGHBOR
+#undef STEP
     vec3 values, n, u;
     eigen_symmetric(diagonal, off, values, n, u);
     n = normalize3(n);
@@ -110,31 +162,29 @@ void main() {
 
     NormalEquations eq = no_samples();
     add_sample(eq, 0.0, 0.0, 0.0, 1.0);
-    for (uint j = 0u; j < count; ++j) {
-        vec3 y = neighbor_offset(list, j, center) * inverse_h;
-        add_sample(eq, dot3(y, u), dot3(y, v), dot3(y, n), exp_negative(-dot3(y, y) * weight_square));
-    }
+#define STEP add_sample(eq, dot3(y, u), dot3(y, v), dot3(y, n), weight);
+    EACH_NEIGHBOR
+#undef STEP
 
-    uint distinct = count_distinct(list, count, center);
     bool spans_plane = values.y > COLLINEAR * values.z;
     float c[6];
-    uint kind = fit_coefficients(eq, spread_out && spans_plane ? params.polynomial : FIT_NO_SURFACE, distinct, c);
+    uint kind = fit_coefficients(eq, spread_out && spans_plane ? params.polynomial : FIT_NO_SURFACE, distinct.count, c);
     float reach_needed = 0.0;
     float openness = 0.0;
     bool finds_rims = params.rim_limit > 0.0;
     if ((params.close_gaps != 0u || finds_rims) && kind != FIT_NO_SURFACE) {
         vec4 e0 = vec4(UNBOUNDED), e1 = e0, e2 = e0, e3 = e0, e4 = e0, e5 = e0;
-        for (uint j = 0u; j < count; ++j) {
-            vec3 y = neighbor_offset(list, j, center) * inverse_h;
-            vec2 q = vec2(dot3(y, u), dot3(y, v));
-            float half_square = 0.5 * (q.x * q.x + q.y * q.y);
-            e0 = narrow(e0, GAP_COSINES[0], GAP_SINES[0], q, half_square);
-            e1 = narrow(e1, GAP_COSINES[1], GAP_SINES[1], q, half_square);
-            e2 = narrow(e2, GAP_COSINES[2], GAP_SINES[2], q, half_square);
-            e3 = narrow(e3, GAP_COSINES[3], GAP_SINES[3], q, half_square);
-            e4 = narrow(e4, GAP_COSINES[4], GAP_SINES[4], q, half_square);
-            e5 = narrow(e5, GAP_COSINES[5], GAP_SINES[5], q, half_square);
-        }
+#define STEP \
+    vec2 q = vec2(dot3(y, u), dot3(y, v)); \
+    float half_square = 0.5 * (q.x * q.x + q.y * q.y); \
+    e0 = narrow(e0, GAP_COSINES[0], GAP_SINES[0], q, half_square); \
+    e1 = narrow(e1, GAP_COSINES[1], GAP_SINES[1], q, half_square); \
+    e2 = narrow(e2, GAP_COSINES[2], GAP_SINES[2], q, half_square); \
+    e3 = narrow(e3, GAP_COSINES[3], GAP_SINES[3], q, half_square); \
+    e4 = narrow(e4, GAP_COSINES[4], GAP_SINES[4], q, half_square); \
+    e5 = narrow(e5, GAP_COSINES[5], GAP_SINES[5], q, half_square);
+        EACH_NEIGHBOR
+#undef STEP
         float f0 = extent_of_cell(e0, GAP_COSINES[0], GAP_SINES[0], c);
         float f1 = extent_of_cell(e1, GAP_COSINES[1], GAP_SINES[1], c);
         float f2 = extent_of_cell(e2, GAP_COSINES[2], GAP_SINES[2], c);
@@ -150,9 +200,9 @@ void main() {
     }
     float ratio = max(params.trust, min(reach_needed, 1.0));
     float trust = kind != FIT_NO_SURFACE ? ratio * h : 0.0;
-    polynomials[slot] =
-        to_world(center, trust, h, inverse_h, n, u, v, c, params.object, points[slot].index);
-    outcomes[slot] = FitOutcome(trust, kind, h);
+    polynomials[slot - params.bound_from] =
+        to_world(center, trust, h, inverse_h, n, u, v, c, params.object, point.w);
+    outcomes[slot - params.bound_from] = FitOutcome(trust, kind, h);
 
     float mean_u = dot3(mean, u), mean_v = dot3(mean, v);
     float away = sqrt(mean_u * mean_u + mean_v * mean_v);

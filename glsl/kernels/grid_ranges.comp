@@ -1,13 +1,14 @@
-// grid_ranges: where each cell's points begin and end in the sorted list of pairs.
+// grid_ranges: where each cell's points begin and end in the sorted lists of all slabs.
 //
 // reads   grid
-//         keys             cells, ascending
+//         keys             cells of one slab, ascending
 // writes  cells            first and past-the-last pair; empty cells keep the zeros they hold
 // runs    one invocation per pair
 // twin    crates/reference/src/grid_build.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "layout.glsl"
+#include "slab.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
@@ -19,11 +20,11 @@ layout(push_constant) uniform Push { GridParams params; };
 void main() {
     uint pair = list_index();
     if (pair >= params.pair_count) return;
-    uint cell_count = grid.resolution.x * grid.resolution.y * grid.resolution.z;
     uint key = keys[pair];
-    if (key >= cell_count) return; // a pair that met no cell
+    if (key >= cells_in_slab(grid, params)) return; // a pair that met no cell
     bool first = pair == 0u || keys[max(pair, 1u) - 1u] != key;
     bool last = pair + 1u == params.pair_count || keys[min(pair + 1u, params.pair_count - 1u)] != key;
-    if (first) cells[key].x = pair;
-    if (last) cells[key].y = pair + 1u;
+    uint cell = key + cell_id(grid, uvec3(0u, 0u, params.first_layer));
+    if (first) cells[cell].x = params.first_pair + pair;
+    if (last) cells[cell].y = params.first_pair + pair + 1u;
 }

@@ -7,12 +7,13 @@
 // writes  the ray state    every ray, also those that are done: the images swap after this. Of listed rays
 //                          in place, theirs alone
 //         live             how many rays have not ended yet
+//         marks            one bit for each of these, by its place in the list; must be zero before
 // runs    one invocation per ray of the wave; dispatched until no ray lives
 // twin    crates/reference/src/grid_trace.rs
 //
 // A ray keeps the nearest hit over all points it tested, whatever cell the hit lies in, and ends
 // where that hit is no farther than the exit of its cell, or where it leaves the grid. K = 1 is the
-// paper's loop. Any K gives the same bits: a pass can end after any cell, and, so that no dispatch
+// paper's loop; cells without points do not count. Any K gives the same bits: a pass can end after any cell, and, so that no dispatch
 // runs away, after any 32 points of one; cell and cursor say where to go on.
 // With LEAVES, rays start on surfaces, whose own sheet they do not meet again at once, and may end at
 // any hit: those towards lights. Light for the points of a volume passes the surface of its own object.
@@ -20,6 +21,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
+#define LISTS
 #include "layout.glsl"
 #include "math.glsl"
 #include "grid.glsl"
@@ -30,18 +32,17 @@
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
-layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
+layout(std430, binding = WAVE_MARKS) buffer Marks { uint marks[]; };
 layout(std430, binding = LIVE_RAYS) readonly buffer LiveRays { uint live_rays[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 
 #define BATCH 32u // points tested before any is solved: one bit each
 
 void main() {
-    uint index = list_index();
-    if (index >= params.ray_count) return;
-    if (params.listed != 0u) index = live_rays[index];
+    uint place = list_index();
+    if (place >= params.ray_count) return;
+    uint index = params.listed != 0u ? live_rays[place] : place;
     Ray ray = load_ray(index);
 
     vec3 o = ray.origin, d = ray.direction;
@@ -50,7 +51,7 @@ void main() {
     bool alive = ray.cell != NONE;
     uint cell = ray.cell;
     uvec3 at = cell_of_id(grid, alive ? cell : 0u); // once: lavapipe divides integers lane by lane
-    uvec2 range = alive ? cells[cell] : uvec2(0u);
+    uvec2 range = alive ? range_of(cell) : uvec2(0u);
     uint next = range.x + ray.cursor;
     uint hit_object = NONE, hit_index = NONE;
     if (alive && ray.hit_slot != NONE) {
@@ -70,19 +71,25 @@ void main() {
 #endif
 
     while (alive && cells_left > 0u && work_left > 0u) {
-        uint count = min(range.y - next, BATCH);
+        uint first = next & ~3u; // slots are read four at a time
+        uint end = min(range.y, first + BATCH);
         uint candidates = 0u;
         bool everything = ray.cells == 0u || ray.after > 0.0;
         vec2 within = way_through(grid, at, o, d);
         within.x = everything ? -NO_HIT : within.x;
         within.y = ray.after > 0.0 ? NO_HIT : within.y;
-        for (uint j = 0u; j < count; ++j) {
-            bool near = enters_trust_ball(o, d, center_trust_of(slots[next + j]), ray.hit_t, within);
-            candidates |= near ? 1u << j : 0u;
+        for (uint at_four = first; at_four < end; at_four += 4u) {
+            uvec4 four = four_slots_at(at_four);
+            uint near = enters_trust_ball(o, d, center_trust_of(four.x), ray.hit_t, within) ? 1u : 0u;
+            near |= enters_trust_ball(o, d, center_trust_of(four.y), ray.hit_t, within) ? 2u : 0u;
+            near |= enters_trust_ball(o, d, center_trust_of(four.z), ray.hit_t, within) ? 4u : 0u;
+            near |= enters_trust_ball(o, d, center_trust_of(four.w), ray.hit_t, within) ? 8u : 0u;
+            candidates |= near << (at_four - first);
         }
+        candidates &= first < end ? (~0u << (next - first)) & (~0u >> (first + BATCH - end)) : 0u;
         uint solved = 0u;
         while (candidates != 0u) {
-            uint slot = slots[next + uint(findLSB(candidates))];
+            uint slot = slot_at(first + uint(findLSB(candidates)));
             candidates &= candidates - 1u;
             Polynomial p = polynomial_of(slot);
 #ifdef LEAVES
@@ -104,9 +111,9 @@ void main() {
             hit_index = better ? p.index : hit_index;
             ++solved;
         }
-        next += count;
-        ray.tests += count;
-        work_left -= min(work_left, count + solved + 1u);
+        ray.tests += end - next;
+        next = end;
+        work_left -= min(work_left, (end - first) / 4u + solved + 2u);
 
 #ifdef LEAVES
         bool stops = params.any_hit != 0u && ray.hit_slot != NONE;
@@ -116,16 +123,17 @@ void main() {
         // On to the next cell that holds points, once this one is exhausted.
         bool seeking = alive && next == range.y;
         while (seeking && cells_left > 0u && work_left > 0u) {
-            vec3 exits = crossings(grid, at, o, d);
+            uint around = empty_around(range);
+            vec3 exits = crossings(grid, at, around, o, d);
             bool ends = ray.hit_t <= nearest_crossing(exits);
-            at = next_cell(at, exits, d);
+            at = next_cell(grid, at, around, exits, o, d);
             alive = !ends && in_grid(grid, at);
             cell = alive ? cell_id(grid, at) : NONE;
-            range = alive ? cells[cell] : uvec2(0u);
+            range = alive ? range_of(cell) : uvec2(0u);
             next = range.x;
             seeking = alive && range.x == range.y;
             ray.cells += alive ? 1u : 0u;
-            --cells_left;
+            cells_left -= seeking ? 0u : 1u; // of cells with points alone
             --work_left;
         }
     }
@@ -133,5 +141,8 @@ void main() {
     ray.cell = cell;
     ray.cursor = next - range.x;
     store_progress(index, ray);
-    if (alive) atomicAdd(live, 1u);
+    if (alive) {
+        atomicAdd(live, 1u);
+        atomicOr(marks[place / 32u], 1u << (place & 31u));
+    }
 }

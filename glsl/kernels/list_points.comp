@@ -8,16 +8,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "layout.glsl"
+#include "cloud.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = OFFSETS_SLOTS) readonly buffer Slots { uint slots[]; };
-layout(std430, binding = OFFSETS_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
+WORDS(OFFSETS_POLYNOMIALS, polynomials); // four each
 layout(std430, binding = OFFSETS_POINTS) writeonly buffer Points { ListedPoint points[]; };
 layout(push_constant) uniform Push { GridParams params; };
 
 void main() {
     uint i = list_index();
     if (i >= params.pair_count) return;
-    points[i] = ListedPoint(polynomials[slots[i]].center_trust.xyz, slots[i]);
+    uint slot = slots[i];
+    points[i] = ListedPoint(uintBitsToFloat(words_of(polynomials, 4u * slot).xyz), slot);
 }

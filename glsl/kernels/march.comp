@@ -36,11 +36,14 @@ layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
 layout(std430, binding = WAVE_PATHS) buffer Paths { Path paths[]; };
 layout(std430, binding = MARCH_STATE) buffer Marches { March marches[]; };
 #ifdef SHADOWS
-layout(std430, binding = WAVE_LIT_RAYS) readonly buffer LitRays { uvec2 lit_rays[]; };
+layout(std430, binding = WAVE_LIT_RAYS) readonly buffer LitRays { uint lit_rays[]; };
 layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
 #else
 layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
+
+uint media_word(uint ray, uint word) {
+    return paths[ray].media[word];
+}
 #include "media.glsl"
 #endif
 #ifdef LIT
@@ -156,7 +159,7 @@ void main() {
     if (at >= params.ray_count) return;
     March march = marches[at];
 #ifdef SHADOWS
-    uint path = lit_rays[at].x;
+    uint path = lit_rays[at];
     Ray ray = load_ray(at);
     // Blocked, or never sent: the light brings nothing, however far it would come.
     bool begins = ray.hit_slot == NONE && any(greaterThan(light_sums[at].arriving, vec3(0.0)));
@@ -176,7 +179,7 @@ void main() {
         march.state = 1u;
     }
 #ifndef SHADOWS
-    uint medium = paths[at].media_count > 0u ? medium_without(at, NONE) : NONE;
+    uint medium = paths[at].media_count > 0u ? medium_without(Media(at, paths[at].media_count), NONE) : NONE;
 #endif
     vec2 way = way_through(ray, path, end);
     float span = way.y - way.x;

@@ -25,7 +25,7 @@ layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = WAVE_PATHS) writeonly buffer Paths { Path paths[]; };
-layout(std430, binding = WAVE_LIT_RAYS) writeonly buffer LitRays { uvec2 lit_rays[]; };
+layout(std430, binding = WAVE_LIT_RAYS) writeonly buffer LitRays { uint lit_rays[]; };
 layout(std430, binding = WAVE_LIGHT_SUMS) writeonly buffer LightSums { LightSum light_sums[]; };
 layout(push_constant) uniform Push { PointLightParams params; };
 
@@ -42,6 +42,6 @@ void main() {
     paths[at].pixel = 0u;
     paths[at].media_count = 1u;
     paths[at].media[0] = volume.object;
-    lit_rays[at] = uvec2(at, NONE);
+    lit_rays[at] = at;
     light_sums[at] = LightSum(vec3(0.0), 0u, vec3(seen ? 1.0 : 0.0), 0u);
 }

@@ -24,19 +24,19 @@
 #include "fit.glsl"
 #include "polynomial.glsl"
 #include "state.glsl"
+#include "objects.glsl"
+#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; uint rejected; };
-layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
 layout(std430, binding = REFINE_OFFSETS) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = REFINE_OUTCOMES) readonly buffer Outcomes { FitOutcome outcomes[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 
-#ifdef RECORDS_AS_TEXELS // as in records.glsl
+#ifdef QUEUE // as in records.glsl
 layout(binding = REFINE_POINTS) uniform usamplerBuffer points;
 
 ListedPoint listed_point(uint i) {
@@ -91,7 +91,7 @@ bool belongs(uint slot, uvec2 slots) {
 // its ball was clipped, so that its centre lies elsewhere.
 uint nearest_slot(Rows rows, vec3 x, uint stored, bool clipped, uvec2 slots) {
     uint best = stored;
-    vec3 to_stored = polynomials[stored].center_trust.xyz - x;
+    vec3 to_stored = center_trust_of(stored).xyz - x;
     float best_square = clipped ? NO_HIT : dot3(to_stored, to_stored);
     for (uint row = 0u; row < rows.count; ++row) {
         uvec2 range = row_range(rows, row);
@@ -100,7 +100,7 @@ uint nearest_slot(Rows rows, vec3 x, uint stored, bool clipped, uvec2 slots) {
             vec3 y = point.position - x;
             float square = dot3(y, y);
             bool ties = square == best_square;
-            bool nearer = square < best_square || (ties && polynomials[point.slot].index < polynomials[best].index);
+            bool nearer = square < best_square || (ties && index_of(point.slot) < index_of(best));
             bool better = nearer && belongs(point.slot, slots);
             best = better ? point.slot : best;
             best_square = better ? square : best_square;
@@ -135,7 +135,7 @@ vec4 neighbor(uint i, vec3 x, float inverse_h, float weight_square) {
 // none.
 Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, uvec2 slots, out uint kind) {
     float inverse_h = 1.0 / h;
-    float weight_scale = objects[object].weight_scale;
+    float weight_scale = object_at(object).weight_scale;
     float weight_square = weight_scale * weight_scale;
     float total = 0.0;
     vec3 sum = vec3(0.0), diagonal = vec3(0.0), off = vec3(0.0);
@@ -176,7 +176,7 @@ Polynomial fit_at(Rows rows, vec3 x, float h, float trust, uint object, uvec2 sl
     }
     bool spans_plane = values.y > COLLINEAR * values.z;
     float c[6];
-    kind = fit_coefficients(eq, spans_plane ? objects[object].polynomial : FIT_NO_SURFACE, UNKNOWNS, c);
+    kind = fit_coefficients(eq, spans_plane ? object_at(object).polynomial : FIT_NO_SURFACE, UNKNOWNS, c);
     return to_world(x, trust, h, inverse_h, n, u, v, c, object, 0u);
 }
 
@@ -186,9 +186,9 @@ void main() {
     Hit hit = hits[at];
     if (bitfieldExtract(hit.status, 0, HIT_STATUS_BITS) != HIT_PENDING) return;
     Ray ray = load_ray(at);
-    vec4 stored = polynomials[ray.hit_slot].center_trust;
-    uint object = polynomials[ray.hit_slot].object;
-    uvec2 slots = uvec2(objects[object].first_slot, objects[object].slot_count);
+    vec4 stored = center_trust_of(ray.hit_slot);
+    uint object = object_of(ray.hit_slot);
+    uvec2 slots = uvec2(object_at(object).first_slot, object_at(object).slot_count);
     vec3 from_stored = hit.position - stored.xyz;
 
     float moved = outcomes[ray.hit_slot].trust - stored.w; // > 0 where the ball was clipped: from point to centre
@@ -199,7 +199,7 @@ void main() {
     uint kind;
     Polynomial p = fit_at(rows, hit.position, h, nearest.trust, object, slots, kind);
 
-    bool settled = abs(p.gradient_offset.w) <= objects[object].tolerance * h;
+    bool settled = abs(p.gradient_offset.w) <= object_at(object).tolerance * h;
     float t = settled ? hit.t : intersect(ray.origin, ray.direction, p, 0.0);
     vec3 y, normal;
     surface_at(ray.origin, ray.direction, t < NO_HIT ? t : hit.t, p, y, normal);
@@ -210,7 +210,7 @@ void main() {
     bool keeps = kind != FIT_NO_SURFACE && inside;
     uint iterations = bitfieldExtract(hit.status, HIT_STATUS_BITS, HIT_STATUS_BITS) + 1u;
     uint counted = hit.status + (1u << HIT_STATUS_BITS) + (1u << HIT_TOTAL_SHIFT) - HIT_PENDING;
-    bool last = settled || (iterations >= objects[object].max_iterations);
+    bool last = settled || (iterations >= object_at(object).max_iterations);
     uint status = keeps ? (last ? HIT_ACCEPTED : HIT_PENDING) : HIT_REJECTED;
     hits[at] = affordable ? Hit(x, t, normal, counted + status)
                           : Hit(hit.position, hit.t, hit.normal, hit.status - HIT_PENDING + HIT_ACCEPTED);

@@ -3,6 +3,7 @@
 // reads   the ray state, grid
 //         hits
 // writes  the ray state    rejected rays alone, in place: they are in the cell of the hit they lost
+//         marks            one bit for each of these; must be zero before
 // runs    one invocation per ray of the wave
 // twin    crates/reference/src/refine.rs
 //
@@ -20,6 +21,7 @@
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
+layout(std430, binding = WAVE_MARKS) buffer Marks { uint marks[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 
 void main() {
@@ -34,4 +36,5 @@ void main() {
     ray.cell = cell_id(grid, cell_of(grid, ray.origin + ray.after * ray.direction));
     ray.cursor = 0u;
     store_ray(at, ray);
+    atomicOr(marks[at / 32u], 1u << (at & 31u));
 }

@@ -2,12 +2,14 @@
 // section 4).
 //
 // reads   the ray state, grid, hits, objects, polynomials, paths
+//         scattering_rays  the rays that hit what is not diffuse
 //         images, texels   the environment
-//         next             offsets of each ray's rays in the next wave, and one behind the last
+//         next_marks       which of a wave's rays make one ray or three
+//         next_offsets     where those of each 32 rays begin
 // writes  the ray state, next_paths   the next wave
 //         film             the background, in the direction of rays that may not go on
-//         tally            reflected and refracted rays
-// runs    one invocation per ray of the wave
+//         tally            reflected rays
+// runs    one invocation per ray that hit what is not diffuse
 // twin    crates/reference/src/wave.rs
 //
 // A ray whose media differ in index between the channels becomes one ray a channel.
@@ -15,99 +17,161 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
-#define STATE_MOVES
 #include "layout.glsl"
 #include "environment.glsl"
+#include "hits.glsl"
 #include "math.glsl"
 #include "grid.glsl"
 #include "optics.glsl"
 #include "sampler.glsl"
 #include "state.glsl"
+#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
-layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
-layout(std430, binding = WAVE_PATHS) readonly buffer Paths { Path paths[]; };
 layout(std430, binding = WAVE_NEXT_PATHS) writeonly buffer NextPaths { Path next_paths[]; };
-layout(std430, binding = WAVE_NEXT) readonly buffer Next { uint next[]; };
-layout(std430, binding = WAVE_TALLY) buffer Tally { uint shadow_count; uint reflected_count; uint refracted_count; };
+layout(std430, binding = WAVE_TALLY) buffer Tally { uint dark_count; uint reflected_count; };
 layout(push_constant) uniform Push { WaveParams params; };
+#include "path.glsl"
 #include "media.glsl"
 #include "film.glsl"
 
+#ifdef QUEUE
+layout(binding = WAVE_SCATTERING) uniform usamplerBuffer scattering_texels; // one value each
+layout(binding = WAVE_NEXT_MARKS) uniform usamplerBuffer next_mark_texels; // two
+layout(binding = WAVE_NEXT) uniform usamplerBuffer next_offset_texels; // one
+
+uint scattering_ray(uint index) {
+    return texelFetch(scattering_texels, int(index)).x;
+}
+
+uvec2 next_marks_of(uint word) {
+    return texelFetch(next_mark_texels, int(word)).xy;
+}
+
+uint next_offset_of(uint word) {
+    return texelFetch(next_offset_texels, int(word)).x;
+}
+#else
+layout(std430, binding = WAVE_SCATTERING) readonly buffer ScatteringRays { uint scattering_rays[]; };
+layout(std430, binding = WAVE_NEXT_MARKS) readonly buffer NextMarks { uvec2 next_marks[]; };
+layout(std430, binding = WAVE_NEXT) readonly buffer NextOffsets { uint next_offsets[]; };
+
+uint scattering_ray(uint index) {
+    return scattering_rays[index];
+}
+
+uvec2 next_marks_of(uint word) {
+    return next_marks[word];
+}
+
+uint next_offset_of(uint word) {
+    return next_offsets[word];
+}
+#endif
+
 // A path after a surface. The object is entered or left where `toggles`.
-void store_path(uint to, uint from, vec3 throughput, uint channels, bool bounces, bool toggles, uint object,
+void store_path(uint to, uint from, Path path, vec3 throughput, uint channels, bool bounces, bool toggles, uint object,
                 uint place) {
-    uint count = paths[from].media_count;
+    uint count = path.media_count;
     bool leaves = place < count;
     next_paths[to].throughput = throughput;
-    next_paths[to].pixel = paths[from].pixel;
+    next_paths[to].pixel = path.pixel;
     next_paths[to].channels = channels | (bounces && !toggles ? uint(PATH_REFLECTED) : 0u);
-    next_paths[to].bounces = paths[from].bounces + (bounces ? 1u : 0u);
-    next_paths[to].crossings = paths[from].crossings + (bounces ? 0u : 1u);
-    uint last = count > 0u ? count - 1u : 0u; // where one is left, the last takes its place
-    uint moved = toggles ? (leaves ? place : count) : MOST_MEDIA;
-    uint mover = leaves ? member_of(from, last) : object;
-    for (uint word = 0u; word < uint(MEDIA_WORDS); ++word) {
-        uint both = paths[from].media[word];
-        uint changed = bitfieldInsert(both, mover, 16 * int(moved & 1u), 16);
-        next_paths[to].media[word] = moved / 2u == word ? changed : both;
-    }
+    next_paths[to].bounces = path.bounces + (bounces ? 1u : 0u);
+    next_paths[to].crossings = path.crossings + (bounces ? 0u : 1u);
     uint after = leaves ? count - 1u : min(count + 1u, MOST_MEDIA);
     next_paths[to].media_count = toggles ? after : count;
-    next_paths[to].emitted = paths[from].emitted;
-    next_paths[to].coverage = paths[from].coverage;
+    if (scene_has(SCENE_NESTED)) {
+        uint last = count > 0u ? count - 1u : 0u; // where one is left, the last takes its place
+        uint moved = toggles ? (leaves ? place : count) : MOST_MEDIA;
+        uint mover = leaves ? member_of(Media(from, count), last) : object;
+        for (uint word = 0u; word < uint(MEDIA_WORDS); ++word) {
+            uint both = media_word(from, word);
+            uint changed = bitfieldInsert(both, mover, 16 * int(moved & 1u), 16);
+            next_paths[to].media[word] = moved / 2u == word ? changed : both;
+        }
+    } else {
+        next_paths[to].media[0] = count > 0u ? media_word(from, 0u) : object;
+    }
+    if (scene_has(SCENE_VOLUMES)) {
+        next_paths[to].emitted = path.emitted;
+        next_paths[to].coverage = path.coverage;
+    }
+}
+
+// A ray at a surface.
+struct Turn {
+    uint ray;
+    vec3 d;
+    Hit hit;
+    uint slot;
+    uint object;
+    bool is_glass;
+    Crossing crossing;
+    vec3 throughput;
+    float chance; // under it, glass reflects
+    uint to;      // where the rays that it makes go in the next wave
+    bool goes_on;
+};
+
+// The ray of these channels.
+void send(Turn turn, Path path, uint channels, uint to) {
+    vec3 d = turn.d, n = turn.hit.normal;
+    uint was_reflected = path.channels & uint(PATH_REFLECTED);
+    bool passes = turn.is_glass && turn.crossing.before == turn.crossing.after;
+    vec3 n1 = ior_of(turn.crossing.before), n2 = ior_of(turn.crossing.after);
+    bool red = (channels & 1u) != 0u, green = channels == 2u;
+    Refraction bent = refraction(d, n, red ? n1.x : (green ? n1.y : n1.z), red ? n2.x : (green ? n2.y : n2.z));
+    bool by_chance = scene_has(SCENE_CHANCE) && turn.chance < bent.reflectance;
+    bool reflects = !turn.is_glass || (!passes && (bent.total || by_chance));
+    vec3 direction = reflects ? reflected(d, n) : (passes ? d : bent.direction);
+    if (turn.goes_on) {
+        store_path(to, turn.ray, path, turn.throughput, channels | was_reflected, !passes, !reflects, turn.object,
+                   turn.crossing.place);
+        uint cell = enter_grid(grid, turn.hit.position, direction);
+        store_ray(to, new_ray(turn.hit.position, direction, cell, turn.slot));
+        if (reflects) atomicAdd(reflected_count, 1u);
+    } else {
+        uint how = channels | was_reflected | (reflects ? uint(PATH_REFLECTED) : 0u);
+        vec3 seen = leaves_out(params.transparent, false, how) ? vec3(0.0) : background_at(params.background, direction);
+        write_channels(path.pixel, channels, path.emitted + turn.throughput * seen);
+        bool refracted = (how & uint(PATH_REFLECTED)) == 0u;
+        write_alpha(path.pixel, channels, vec3(1.0) - (refracted ? turn.throughput : vec3(0.0)));
+    }
 }
 
 void main() {
-    uint at = list_index();
-    if (at >= params.ray_count) return;
-    if (paths[at].pixel == NONE) return;
+    uint index = list_index();
+    if (index >= params.ray_count) return;
+    uint at = scattering_ray(index);
     Ray ray = load_ray(at);
-    if (ray.hit_slot == NONE) return;
-    uint object = polynomials[ray.hit_slot].object;
-    uint material = objects[object].material;
-    if (material == MATERIAL_DIFFUSE) return;
-
-    Hit hit = hits[at];
-    vec3 d = ray.direction, n = hit.normal;
-    bool is_glass = material == MATERIAL_GLASS;
-    uint all = paths[at].channels & uint(CHANNELS_ALL);
-    uint was_reflected = paths[at].channels & uint(PATH_REFLECTED);
+    Path path = path_of(at);
+    uint object = object_of(ray.hit_slot);
+    bool is_glass = object_at(object).material == MATERIAL_GLASS;
+    vec3 albedo = object_at(object).albedo;
+    uint all = path.channels & uint(CHANNELS_ALL);
     Crossing crossing = Crossing(NONE, NONE, MOST_MEDIA);
-    if (is_glass) crossing = crossing_of(at, object);
-    bool passes = is_glass && crossing.before == crossing.after;
-    uint count = is_glass && splits(crossing, all) ? 3u : 1u;
-    vec3 throughput = paths[at].throughput * (is_glass ? vec3(1.0) : objects[object].albedo);
-    uvec2 pixel = params.tile_origin + uvec2(paths[at].pixel % params.tile_size.x, paths[at].pixel / params.tile_size.x);
-    uint sample_index = params.sample_index == NONE ? 0u : params.sample_index;
-    float chance = sample_1d(pixel, sample_index, params.seed, uint(SAMPLE_FRESNEL) + paths[at].bounces);
-    uint to = next[at];
-    bool goes_on = next[at + 1u] > to;
-    for (uint i = 0u; i < count; ++i) {
-        uint channels = count > 1u ? 1u << i : all;
-        vec3 n1 = ior_of(crossing.before), n2 = ior_of(crossing.after);
-        bool red = (channels & 1u) != 0u, green = channels == 2u;
-        Refraction bent = refraction(d, n, red ? n1.x : (green ? n1.y : n1.z), red ? n2.x : (green ? n2.y : n2.z));
-        bool by_chance = params.fresnel != 0u && chance < bent.reflectance;
-        bool reflects = !is_glass || (!passes && (bent.total || by_chance));
-        vec3 direction = reflects ? reflected(d, n) : (passes ? d : bent.direction);
-        if (goes_on) {
-            store_path(to + i, at, throughput, channels | was_reflected, !passes, !reflects, object, crossing.place);
-            uint cell = enter_grid(grid, hit.position, direction);
-            store_ray(to + i, new_ray(hit.position, direction, cell, ray.hit_slot));
-            if (reflects) atomicAdd(reflected_count, 1u);
-            else atomicAdd(refracted_count, 1u);
-        } else {
-            uint how = channels | was_reflected | (reflects ? uint(PATH_REFLECTED) : 0u);
-            vec3 seen = leaves_out(params.transparent, false, how) ? vec3(0.0) : background_at(params.background, direction);
-            write_channels(paths[at].pixel, channels, paths[at].emitted + throughput * seen);
-            bool refracted = (how & uint(PATH_REFLECTED)) == 0u;
-            write_alpha(paths[at].pixel, channels, vec3(1.0) - (refracted ? throughput : vec3(0.0)));
-        }
+    if (is_glass) crossing = crossing_of(Media(at, path.media_count), object);
+
+    uint bit = at & 31u, below = (1u << bit) - 1u;
+    uvec2 marks = next_marks_of(at / 32u);
+    uint to = next_offset_of(at / 32u) + uint(bitCount(marks.x & below)) + 2u * uint(bitCount(marks.y & below));
+    float chance = 0.0;
+    if (scene_has(SCENE_CHANCE)) {
+        uvec2 pixel = params.tile_origin + uvec2(path.pixel % params.tile_size.x, path.pixel / params.tile_size.x);
+        uint sample_index = params.sample_index == NONE ? 0u : params.sample_index;
+        chance = sample_1d(pixel, sample_index, params.seed, uint(SAMPLE_FRESNEL) + path.bounces);
+    }
+    Turn turn = Turn(at, ray.direction, hit_of(at), ray.hit_slot, object, is_glass, crossing,
+                     path.throughput * (is_glass ? vec3(1.0) : albedo), chance, to, (marks.x >> bit & 1u) != 0u);
+    if (scene_has(SCENE_DISPERSES)) {
+        bool is_split = is_glass && splits(crossing, all);
+        uint count = is_split ? 3u : 1u;
+        for (uint i = 0u; i < count; ++i) send(turn, path, is_split ? 1u << i : all, to + i);
+    } else {
+        send(turn, path, all, to);
     }
 }

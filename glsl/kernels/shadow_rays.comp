@@ -1,12 +1,12 @@
 // shadow_rays: the rays from the diffuse hits of a wave towards one light (section 5 of the paper).
 //
 // reads   the shadow rays' state      as the rays towards the light before this one left it
-//         hits, lights, grid
+//         lit_hits, lights, grid
 //         lit_rays         the rays that hit a diffuse surface
 // writes  the shadow rays' state      towards this light; none where it lies behind the surface
 //         light_sums       what the lights before this one bring, and what this one would
 //         film             counts
-//         tally            shadow rays
+//         tally            hits that send none
 // runs    one invocation per diffuse hit
 // twin    crates/reference/src/shade.rs
 #version 460
@@ -22,38 +22,42 @@
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
 layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
-layout(std430, binding = WAVE_PATHS) readonly buffer Paths { Path paths[]; };
-layout(std430, binding = WAVE_LIT_RAYS) readonly buffer LitRays { uvec2 lit_rays[]; };
 layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
-layout(std430, binding = WAVE_TALLY) buffer Tally { uint shadow_count; uint reflected_count; uint refracted_count; };
+layout(std430, binding = WAVE_TALLY) buffer Tally { uint dark_count; uint reflected_count; };
 layout(push_constant) uniform Push { WaveParams params; };
 #include "film.glsl"
 #include "gather.glsl"
+#include "lit.glsl"
+#include "path.glsl"
 
 void main() {
     uint at = list_index();
     if (at >= params.ray_count) return;
-    uint ray = lit_rays[at].x;
-    Hit hit = hits[ray];
-    vec3 sum = params.light > 0u ? gathered(at, paths[ray].pixel) : vec3(0.0);
+    uint ray = lit_ray(at);
+    LitHit hit = lit_hit_of(ray);
+    uint tile_at = path_of(ray).pixel;
+    vec3 sum = vec3(0.0);
+    if (scene_has(SCENE_MANY_LIGHTS)) {
+        if (params.light > 0u) sum = gathered(at, tile_at);
+    }
     vec2 place = vec2(0.5); // of a light: its centre, unless it is sampled
-    if (params.sample_index != NONE) {
-        uint tile_at = paths[ray].pixel;
+    if (scene_has(SCENE_SAMPLES)) {
         uvec2 pixel = params.tile_origin + uvec2(tile_at % params.tile_size.x, tile_at / params.tile_size.x);
         place = sample_2d(pixel, params.sample_index, params.seed, uint(SAMPLE_LIGHT) + params.light);
     }
     LightSample light = sample_light(lights[params.light], hit.position, place);
     vec3 arriving = light.arriving * max(dot3(hit.normal, light.towards), 0.0);
     bool arrives = any(greaterThan(arriving, vec3(0.0)));
-    light_sums[at] = LightSum(sum, 0u, arriving, 0u);
+    if (scene_has(SCENE_MANY_LIGHTS)) light_sums[at].sum = sum;
+    light_sums[at].arriving = arriving;
     Ray shadow = no_ray();
     if (arrives) {
-        shadow = new_ray(hit.position, light.towards, enter_grid(grid, hit.position, light.towards), lit_rays[at].y);
+        shadow = new_ray(hit.position, light.towards, enter_grid(grid, hit.position, light.towards), hit.slot);
         shadow.hit_t = light.distance;
-        atomicAdd(shadow_count, 1u);
+    } else {
+        atomicAdd(dark_count, 1u);
     }
     store_ray(at, shadow);
 }

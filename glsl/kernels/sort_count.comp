@@ -19,7 +19,7 @@ void main() {
     if (run >= params.runs) return;
     uint end = min((run + 1u) * RUN_LENGTH, params.count);
     for (uint i = run * RUN_LENGTH; i < end; ++i) {
-        uint digit = bitfieldExtract(keys_in[i], int(params.shift), DIGIT_BITS);
+        uint digit = bitfieldExtract(keys_in[i], int(params.shift), int(params.bits));
         histogram[digit * params.runs + run] += 1u;
     }
 }

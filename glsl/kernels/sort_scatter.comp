@@ -24,7 +24,7 @@ void main() {
     uint end = min((run + 1u) * RUN_LENGTH, params.count);
     for (uint i = run * RUN_LENGTH; i < end; ++i) {
         uint key = keys_in[i];
-        uint column = bitfieldExtract(key, int(params.shift), DIGIT_BITS) * params.runs + run;
+        uint column = bitfieldExtract(key, int(params.shift), int(params.bits)) * params.runs + run;
         uint place = histogram[column];
         histogram[column] = place + 1u;
         keys_out[place] = key;

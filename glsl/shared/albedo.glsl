@@ -9,12 +9,12 @@
 #include "blend.glsl"
 #include "grid.glsl"
 #include "image.glsl"
+#include "scene.glsl"
+#include "objects.glsl"
+#define LISTS
+#include "records.glsl"
 
 layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = TRACE_CELLS) readonly buffer Cells { uvec2 cells[]; };
-layout(std430, binding = TRACE_SLOTS) readonly buffer Slots { uint slots[]; };
-layout(std430, binding = TRACE_POLYNOMIALS) readonly buffer Polynomials { Polynomial polynomials[]; };
-layout(std430, binding = SHADE_OBJECTS) readonly buffer Objects { ObjectInfo objects[]; };
 layout(std430, binding = SHADE_COLORS) readonly buffer Colors { float colors[]; };
 
 // Points of a cell that are asked. Two loops over so many stay under what lavapipe allows a dispatch.
@@ -34,23 +34,23 @@ vec3 value_of(ObjectInfo object, uint slot) {
 vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
     vec3 sum = 1e-6 * value_of(object, slot);
     float weights = 1e-6;
-    uvec2 range = cells[cell_id(grid, cell_of(grid, x))];
+    uvec2 range = range_of(cell_id(grid, cell_of(grid, x)));
     uint end = object.first_color != NONE ? min(range.y, range.x + MOST_ASKED) : range.x;
     for (uint first = range.x; first < end; first += ASKED_AT_ONCE) {
         uint count = min(end - first, ASKED_AT_ONCE);
         uint holding = 0u;
         for (uint i = 0u; i < count; ++i) {
-            uint near = slots[first + i];
-            vec4 ball = polynomials[near].center_trust;
+            uint near = slot_at(first + i);
+            vec4 ball = center_trust_of(near);
             vec3 y = x - ball.xyz;
             bool holds = near - object.first_slot < object.slot_count && dot3(y, y) < ball.w * ball.w;
             holding |= holds ? 1u << i : 0u;
         }
         while (holding != 0u) {
-            uint near = slots[first + uint(findLSB(holding))];
+            uint near = slot_at(first + uint(findLSB(holding)));
             holding &= holding - 1u;
             vec3 normal;
-            float weight = weight_at(polynomials[near], x, normal);
+            float weight = weight_at(polynomial_of(near), x, normal);
             sum += weight * value_of(object, near);
             weights += weight;
         }
@@ -60,19 +60,21 @@ vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
 
 // The albedo at x of the object at `index`, whose point at `slot` was hit.
 vec3 albedo_at(uint index, uint slot, vec3 x) {
-    ObjectInfo object = objects[index];
+    ObjectInfo object = object_at(index);
+    bool has_values = scene_has(SCENE_VALUES) && object.first_color != NONE;
+    bool has_texture = scene_has(SCENE_TEXTURES) && object.texture != NONE;
     vec3 value = vec3(0.0);
-    uint value_count = object.first_color != NONE ? 1u : 0u;
-    for (uint i = 0u; i < value_count; ++i) value = blended_value(object, slot, x);
-    bool has_texture = object.texture != NONE;
-    vec3 color = value_count > 0u && !has_texture ? value : object.albedo;
-    float u = dot3(object.texture_u.xyz, x) + object.texture_u.w;
-    float v = dot3(object.texture_v.xyz, x) + object.texture_v.w;
-    u = value_count > 0u ? value.x : u;
-    v = value_count > 0u ? value.y : v;
-    // A loop of one or none: lavapipe runs both sides of an `if` for every pixel.
-    uint texture_count = has_texture ? 1u : 0u;
-    for (uint i = 0u; i < texture_count; ++i) color = image_at(images[object.texture], u, v, false);
+    if (scene_has(SCENE_VALUES)) {
+        if (has_values) value = blended_value(object, slot, x);
+    }
+    vec3 color = has_values && !has_texture ? value : object.albedo;
+    if (scene_has(SCENE_TEXTURES)) {
+        float u = dot3(object.texture_u.xyz, x) + object.texture_u.w;
+        float v = dot3(object.texture_v.xyz, x) + object.texture_v.w;
+        u = has_values ? value.x : u;
+        v = has_values ? value.y : v;
+        if (has_texture) color = image_at(images[object.texture], u, v, false);
+    }
     return color;
 }
 #endif

@@ -5,6 +5,7 @@
 #define ENVIRONMENT_GLSL
 #include "image.glsl"
 #include "math.glsl"
+#include "scene.glsl"
 
 #define INVERSE_TURN 0.159154943 // 1 / 2 pi
 #define INVERSE_HALF_TURN 0.318309886
@@ -20,9 +21,7 @@ vec3 environment(ImageInfo image, vec3 direction) {
 
 vec3 background_at(BackgroundInfo background, vec3 direction) {
     vec3 color = background.color;
-    // A loop of one or none: lavapipe runs both sides of an `if` for every pixel.
-    uint count = background.environment != NONE ? 1u : 0u;
-    for (uint i = 0u; i < count; ++i) color = environment(images[background.environment], direction);
+    if (scene_has(SCENE_ENVIRONMENT)) color = environment(images[background.environment], direction);
     return color;
 }
 #endif

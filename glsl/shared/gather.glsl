@@ -5,6 +5,7 @@
 #ifndef GATHER_GLSL
 #define GATHER_GLSL
 #include "layout.glsl"
+#include "scene.glsl"
 #include "state.glsl"
 
 // The lights' sum at a diffuse hit with the last light that was asked.
@@ -12,6 +13,8 @@ vec3 gathered(uint at, uint pixel) {
     Ray shadow = load_ray(at);
     count_work(pixel, shadow.tests, shadow.cells);
     bool blocked = shadow.hit_slot != NONE;
-    return light_sums[at].sum + (blocked ? vec3(0.0) : light_sums[at].arriving);
+    vec3 sum = vec3(0.0); // of one light alone nobody stores it
+    if (scene_has(SCENE_MANY_LIGHTS)) sum = light_sums[at].sum;
+    return sum + (blocked ? vec3(0.0) : light_sums[at].arriving);
 }
 #endif

@@ -39,17 +39,18 @@ bool ball_meets_cell(GridInfo grid, uvec3 cell, vec3 center, float radius) {
     return dot3(away, away) <= radius * radius;
 }
 
-// Distance along the ray to the face of the cell that it leaves through, along one axis.
-float crossing(float origin, float edge, uint cell, float o, float d) {
+// Distance along the ray to the face that it leaves through of the box of cells at most `around` from the
+// cell, along one axis.
+float crossing(float origin, float edge, int cell, int around, float o, float d) {
     bool crosses = abs(d) > PARALLEL;
-    float face = origin + float(d > 0.0 ? cell + 1u : cell) * edge;
+    float face = origin + float(d > 0.0 ? cell + around + 1 : cell - around) * edge;
     return crosses ? (face - o) / (crosses ? d : 1.0) : NO_HIT;
 }
 
-vec3 crossings(GridInfo grid, uvec3 cell, vec3 o, vec3 d) {
-    return vec3(crossing(grid.origin.x, grid.edge, cell.x, o.x, d.x),
-                crossing(grid.origin.y, grid.edge, cell.y, o.y, d.y),
-                crossing(grid.origin.z, grid.edge, cell.z, o.z, d.z));
+vec3 crossings(GridInfo grid, uvec3 cell, uint around, vec3 o, vec3 d) {
+    return vec3(crossing(grid.origin.x, grid.edge, int(cell.x), int(around), o.x, d.x),
+                crossing(grid.origin.y, grid.edge, int(cell.y), int(around), o.y, d.y),
+                crossing(grid.origin.z, grid.edge, int(cell.z), int(around), o.z, d.z));
 }
 
 float nearest_crossing(vec3 t) {
@@ -58,8 +59,8 @@ float nearest_crossing(vec3 t) {
 
 // Where a ray's way through the cell begins and ends.
 vec2 way_through(GridInfo grid, uvec3 cell, vec3 o, vec3 d) {
-    vec3 enters = -crossings(grid, cell, o, -d);
-    return vec2(max(enters.x, max(enters.y, enters.z)), nearest_crossing(crossings(grid, cell, o, d)));
+    vec3 enters = -crossings(grid, cell, 0u, o, -d);
+    return vec2(max(enters.x, max(enters.y, enters.z)), nearest_crossing(crossings(grid, cell, 0u, o, d)));
 }
 
 // One axis of the slabs of the grid's box: narrows [range.x, range.y].
@@ -85,16 +86,27 @@ uint enter_grid(GridInfo grid, vec3 o, vec3 d) {
     return misses ? NONE : cell_id(grid, cell);
 }
 
-// The next cell behind the face at the nearest crossing (ties: the lower axis); outside of the grid, one
-// past some axis.
-uvec3 next_cell(uvec3 cell, vec3 t, vec3 d) {
+// How many cells around one of these are empty with it, where `range` is its range of points: the range of
+// an empty one begins at the distance to the next that is not (skip_cells.comp).
+uint empty_around(uvec2 range) {
+    return range.x == range.y ? max(range.x, 1u) - 1u : 0u;
+}
+
+// The next cell behind the face at the nearest of the crossings t of the box of cells `around` the cell (ties:
+// the lower axis); outside of the grid, one past some axis. Along the other axes it is where the ray is
+// then, in the box, and never behind where it was.
+uvec3 next_cell(GridInfo grid, uvec3 cell, uint around, vec3 t, vec3 o, vec3 d) {
+    ivec3 reached = ivec3(cell_of(grid, o + nearest_crossing(t) * d));
+    ivec3 ahead = ivec3(greaterThan(d, vec3(0.0)));
+    ivec3 from = ivec3(cell);
+    ivec3 low = from - (1 - ahead) * int(around);
+    ivec3 high = from + ahead * int(around);
     bool along_x = t.x <= t.y && t.x <= t.z;
     bool along_y = !along_x && t.y <= t.z;
     bool along_z = !along_x && !along_y;
-    uvec3 axis = uvec3(along_x, along_y, along_z);
-    uvec3 forth = axis * uvec3(greaterThan(d, vec3(0.0)));
-    uvec3 back = axis - forth;
-    return cell + forth - back; // 0 - 1 wraps to a number past every resolution
+    bvec3 axis = bvec3(along_x, along_y, along_z);
+    ivec3 beyond = mix(low - 1, high + 1, equal(ahead, ivec3(1)));
+    return uvec3(mix(clamp(reached, low, high), beyond, axis)); // under 0: a number past every resolution
 }
 
 bool in_grid(GridInfo grid, uvec3 cell) {

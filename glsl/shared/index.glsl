@@ -11,10 +11,12 @@ uint list_index() {
 
 // A workgroup covers 8 x 8 pixels, each run of eight invocations 4 x 2 of them: rays that run
 // together should see the same cells.
+uvec2 pixel_within(uint i) {
+    return uvec2((i & 3u) | ((i >> 1) & 4u), ((i >> 2) & 1u) | ((i >> 3) & 6u));
+}
+
 uvec2 tile_pixel() {
-    uint i = gl_LocalInvocationID.x;
-    uvec2 within = uvec2((i & 3u) | ((i >> 1) & 4u), ((i >> 2) & 1u) | ((i >> 3) & 6u));
-    return gl_WorkGroupID.xy * 8u + within;
+    return gl_WorkGroupID.xy * 8u + pixel_within(gl_LocalInvocationID.x);
 }
 
 // The ray of that pixel in the wave of rays from the camera: workgroup after workgroup, so that
@@ -22,5 +24,12 @@ uvec2 tile_pixel() {
 uint tile_ray(uvec2 tile_size) {
     uint across = (tile_size.x + 7u) / 8u;
     return (gl_WorkGroupID.y * across + gl_WorkGroupID.x) * uint(TILE_GROUP) + gl_LocalInvocationID.x;
+}
+
+// The pixel of a ray from the camera, the other way round.
+uvec2 pixel_of_ray(uint ray, uvec2 tile_size) {
+    uint across = (tile_size.x + 7u) / 8u;
+    uint i = ray % uint(TILE_GROUP), group = ray / uint(TILE_GROUP);
+    return uvec2(group % across, group / across) * 8u + pixel_within(i);
 }
 #endif

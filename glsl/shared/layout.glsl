@@ -13,11 +13,10 @@
 #define LINE_ROW 1048576 // invocations a row of such a kernel, where one row is not enough
 #define TILE_GROUP 64 // invocations a workgroup of every kernel that runs over pixels, 8 x 8 of them
 #define RUN_LENGTH 256 // entries that one invocation of the scan and sort kernels walks
-#define DIGIT_BITS 8 // bits of a key sorted in one round
+#define DIGIT_BITS 8 // bits of a key sorted in one round at most
 
 // disc_count, disc_emit, disc_ranges
 #define DISC_TILE 8 // pixels a screen tile has along each side: those of one workgroup
-#define DISC_POLYNOMIALS 0
 #define DISC_OFFSETS 1
 #define DISC_KEYS 2
 #define DISC_SLOTS 3
@@ -31,11 +30,31 @@
 #define FIT_SIZES 4
 #define FIT_RIMS 5
 
+// leaf_boxes, node_boxes, bound_reach, gather_leaves, find_neighbors
+#define SEARCH_POINTS 0
+#define SEARCH_NODES 1
+#define SEARCH_BOUNDS 2
+#define SEARCH_LEAVES 3
+#define SEARCH_COUNTS 4
+#define SEARCH_LISTS 5
+#define SEARCH_GROUPS 6
+#define SEARCH_TIES 7
+#define LEAF_POINTS 8 // consecutive slots that share a box, and so a list of leaves; children of a node
+#define LEAF_LEVELS 10 // of boxes, at most
+#define LEAF_BITS 24 // of an entry in a list of leaves: the leaf; the others: which of LEAF_POINTS it is for
+#define LEAF_STEPS 32768 // boxes that the search for one list of leaves may look at
+
+// smooth_sizes
+#define SMOOTH_POINTS 0
+#define SMOOTH_LISTS 1
+#define SMOOTH_REACHES 2
+#define SMOOTH_SIZES 3
+
 // clip_balls
 #define CLIP_CLIPS 0
 #define CLIP_POLYNOMIALS 1
 
-// grid_count, grid_emit, grid_ranges
+// grid_count, grid_emit, grid_emit_large, grid_ranges
 #define GRID_INFO 0
 #define GRID_POLYNOMIALS 1
 #define GRID_ORDER 2
@@ -43,6 +62,14 @@
 #define GRID_KEYS 4
 #define GRID_SLOTS 5
 #define GRID_CELLS 6
+#define GRID_LARGE 7
+#define SKIP_MARKS_IN 8
+#define SKIP_MARKS_OUT 9
+#define SKIP_OCCUPIED 10
+#define SKIP_BESIDE 11
+#define SKIP_NEAR 12
+#define SKIP_FAR 13
+#define MOST_SKIPPED 4 // cells from an empty one to the next that may not be: no greater distance is told apart
 
 // scan_reduce, scan_apply
 #define SCAN_VALUES 0
@@ -68,7 +95,6 @@
 #define STATE_IN 0   // then 1, 2, 3
 #define STATE_OUT 4  // then 5, 6, 7
 #define TRACE_INFO 8
-#define TRACE_KEYS 8 // disc_trace, which needs no grid
 #define TRACE_CELLS 9
 #define TRACE_SLOTS 10
 #define TRACE_POLYNOMIALS 11
@@ -124,6 +150,29 @@
 #define CHANNELS_ALL 7 // a path's channels: 1 red, 2 green, 4 blue
 #define PATH_REFLECTED 8 // beside them: the path was reflected somewhere
 
+// Of a wave.
+#define WAVE_FROM_CAMERA 1  // its rays come from there
+#define WAVE_SHARES_PATH 2  // and have one path, but for the pixel
+
+// What a scene has need of: bits of the specialization constant 0 (scene.glsl). Drivers leave out what it has not.
+#define SCENE_ENVIRONMENT 1 // rays that hit nothing see an image
+#define SCENE_BLENDS 2      // normals of an object are blended
+#define SCENE_LIGHTS 4      // and shade writes the colours of diffuse hits
+#define SCENE_ALPHA 8       // what each channel lets through is written
+#define SCENE_DIAGNOSTICS 16 // cells crossed, points hit and iterations are written
+#define SCENE_VALUES 32     // points of an object have colours, or places in a texture
+#define SCENE_TEXTURES 64
+#define SCENE_SAMPLES 128   // a pixel has several
+#define SCENE_REFINES 256   // hits of an object are refined
+#define SCENE_DIFFUSE 512   // an object is diffuse
+#define SCENE_SCATTERS 1024 // one is not
+#define SCENE_NESTED 2048   // several are of glass, and rays may be inside more than one
+#define SCENE_DISPERSES 4096 // glass has indices by channel, and rays become three
+#define SCENE_ABSORBS 8192  // glass does
+#define SCENE_CHANCE 16384  // decides whether glass reflects or refracts
+#define SCENE_VOLUMES 32768 // paths carry what volumes emit
+#define SCENE_MANY_LIGHTS 65536 // more than one
+
 // What transparent pictures leave the background out of.
 #define TRANSPARENT_CAMERA 1 // camera rays
 #define TRANSPARENT_GLASS 2 // and all that was refracted alone
@@ -141,6 +190,14 @@
 #define ISO_SEARCHES 41
 #define MARCH_LIGHT 42 // MarchLight by ray
 #define MARCH_VISIBLE 43
+#define DISC_RANGES_IN 44 // camera_trace and disc_trace read the lists of screen tiles
+#define DISC_KEYS_IN 45
+#define DISC_SLOTS_IN 46
+#define WAVE_LIT_HITS 47
+#define WAVE_MARKS 48
+#define WAVE_SCATTERING 49
+#define WAVE_NEXT_MARKS 50
+#define LIST_IN 51
 #define SHADE_IMAGES 30
 #define SHADE_TEXELS 31
 
@@ -210,6 +267,47 @@ struct Rim {             // 20 bytes
     float openness;      // 16  reach of the Voronoi cell over that of the neighbours
 };
 
+// The box around LEAF_POINTS points, or around as many boxes. Empty: low above high.
+struct SearchNode {      // 32 bytes
+    vec3 low;            //  0
+    uint child;          // 12  the first of the boxes inside; NONE: points are
+    vec3 high;           // 16
+    uint next;           // 28  the box to look at once this one and all inside are done; NONE: none
+};
+
+// One level of the boxes of an object.
+struct LevelParams {     // 64 bytes
+    uint first_slot;     //  0  of the object
+    uint point_count;    //  4  of the object
+    uint neighbors;      //  8  k
+    uint level;          // 12  0: the boxes of points
+    uint top;            // 16  the highest level: it has LEAF_POINTS boxes
+    uint count;          // 20  boxes of this level, a multiple of LEAF_POINTS
+    uint offsets[10];    // 24  first box of each level
+};
+
+// Of the neighbours of one batch.
+struct SearchParams {    // 40 bytes
+    uint first_slot;     //  0  of the object
+    uint point_count;    //  4  of the object
+    uint batch_first;    //  8  place in the object of the batch's first point, a multiple of LEAF_POINTS
+    uint batch_count;    // 12
+    uint neighbors;      // 16  k, less than point_count, or 1
+    uint stride;         // 20  entries of a point in the list of neighbours, a multiple of four
+    uint capacity;       // 24  entries of a list of leaves, a multiple of four
+    uint root;           // 28  the first box of the highest level
+    uint leaf_count;     // 32  boxes of points, which come first
+    uint listed;         // 36  leaves of the batch that are looked at again, with a larger capacity; 0: all are
+};
+
+// Of one batch.
+struct SmoothParams {    // 16 bytes
+    uint first_slot;     //  0  of the batch
+    uint point_count;    //  4  in the batch
+    uint stride;         //  8  entries of a point in the list of neighbours
+    uint round;          // 12  0: reaches are written; 1: sizes
+};
+
 // A trust ball that ends at a rim.
 struct BallClip {        // 20 bytes
     uint slot;           //  0
@@ -221,10 +319,10 @@ struct ClipParams {      // 4 bytes
     uint count;          // 0
 };
 
-struct FitParams {       // 44 bytes
+struct FitParams {       // 48 bytes
     uint first_slot;     //  0  of this batch
     uint point_count;    //  4  in this batch
-    uint neighbors;      //  8  entries a point in the list of neighbours
+    uint neighbors;      //  8  entries a point in the list of neighbours, a multiple of four
     uint polynomial;     // 12  FIT_FULL or FIT_INCOMPLETE: the first kind tried
     float feature_size;  // 16  h for all points; 0: the distance to the last neighbour; -1: sizes
     float trust;         // 20  b / h
@@ -233,6 +331,7 @@ struct FitParams {       // 44 bytes
     float weight_scale;  // 32  h over the width of the weights
     uint close_gaps;     // 36  1: b grows, at most to h, where neighbours leave a gap
     float rim_limit;     // 40  of the distance to the centroid, over the neighbours' reach; 0: no rims
+    uint bound_from;     // 44  slot that the buffers by slot are bound from; points are bound as a whole
 };
 
 struct GridInfo {        // 32 bytes
@@ -242,10 +341,15 @@ struct GridInfo {        // 32 bytes
     float inverse_edge;  // 28
 };
 
-struct GridParams {      // 12 bytes
-    uint point_count;    // 0
-    uint pair_count;     // 4
-    float ball_scale;    // 8  radius listed over trust radius; 0: each point in its own cell alone
+// Of one slab: some layers of cells along z.
+struct GridParams {      // 28 bytes
+    uint point_count;    //  0
+    uint pair_count;     //  4  of the slab
+    float ball_scale;    //  8  radius listed over trust radius; 0: each point in its own cell alone
+    uint first_layer;    // 12
+    uint end_layer;      // 16  past the last
+    uint first_pair;     // 20  pairs of the slabs before
+    uint any_large;      // 24  1: balls may be large
 };
 
 struct ScanParams {      // 8 bytes
@@ -253,10 +357,11 @@ struct ScanParams {      // 8 bytes
     uint has_base;       // 4  1: sums holds what comes before each run
 };
 
-struct SortParams {      // 12 bytes
-    uint count;          // 0
-    uint shift;          // 4  lowest bit of the digit
-    uint runs;           // 8
+struct SortParams {      // 16 bytes
+    uint count;          //  0
+    uint shift;          //  4  lowest bit of the digit
+    uint runs;           //  8
+    uint bits;           // 12  of the digit, DIGIT_BITS at most
 };
 
 struct CameraParams {    // 96 bytes
@@ -312,6 +417,37 @@ struct BackgroundInfo {  // 16 bytes
     uint environment;    // 12  an image, or NONE: color counts
 };
 
+struct CameraTraceParams { // 120 bytes
+    vec3 eye;            //  0  these as in CameraParams
+    float scale;         // 12
+    vec3 right;          // 16
+    float half_width;    // 28
+    vec3 up;             // 32
+    float half_height;   // 44
+    vec3 forward;        // 48
+    uint work;           // 60  loop iterations a ray may spend
+    uvec2 tile_origin;   // 64  in the full image, pixels
+    uvec2 tile_size;     // 72
+    BackgroundInfo background; // 80
+    DepthRanks ranks;    // 96
+    uint transparent;    // 112 TRANSPARENT_*, or 0: nothing leaves the background out
+    uint max_bounces;    // 116
+};
+
+// Where light is asked for.
+struct LitHit {          // 32 bytes
+    vec3 position;       //  0  centred scene space
+    uint slot;           // 12  the point hit
+    vec3 normal;         // 16  unit, facing the ray's origin
+    uint pad;            // 28
+};
+
+struct MarkParams {      // 12 bytes
+    uint words;          // 0  of 32 marks each
+    uint pairs;          // 4  1: a word is followed by one whose marks count twice
+    uint listed;         // 8  1: marks are of the rays of a list
+};
+
 // Of the kernels that scatter and shade the rays of a wave.
 struct WaveParams {      // 80 bytes
     vec3 forward;        //  0  viewing axis
@@ -319,7 +455,7 @@ struct WaveParams {      // 80 bytes
     BackgroundInfo background; // 16
     uvec2 tile_origin;   // 32  in the full image, pixels
     uvec2 tile_size;     // 40
-    uint wave;           // 48  0: rays from the camera
+    uint flags;          // 48  WAVE_*
     uint max_bounces;    // 52
     uint fresnel;        // 56  1: glass reflects or refracts at random, 0: it refracts
     uint seed;           // 60

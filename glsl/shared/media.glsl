@@ -3,29 +3,41 @@
 // twin  crates/reference/src/media.rs
 // After Schmidt and Budge, Simple Nested Dielectrics in Ray Traced Images (2002): a ray carries the
 // set of glass objects that it is inside, a hit on one toggles its membership, and the member of the
-// highest priority is the medium (ties: the last in the scene). Whoever includes this has buffers
-// `objects` and `paths`.
+// highest priority is the medium (ties: the last in the scene). Whoever includes this has media_word(ray, word),
+// and tells the count of media. Where a scene has one object of glass, that is the one member there may be.
 #ifndef MEDIA_GLSL
 #define MEDIA_GLSL
 #include "layout.glsl"
 #include "math.glsl"
+#include "objects.glsl"
+#include "scene.glsl"
 
 #define MOST_MEDIA (2u * uint(MEDIA_WORDS)) // a ray inside more forgets the last it entered
 
-uint member_of(uint ray, uint nth) {
-    return bitfieldExtract(paths[ray].media[nth / 2u], 16 * int(nth & 1u), 16);
+// What a ray is inside of.
+struct Media {
+    uint ray;
+    uint count;
+};
+
+uint member_of(Media media, uint nth) {
+    return bitfieldExtract(media_word(media.ray, nth / 2u), 16 * int(nth & 1u), 16);
 }
 
 bool outranks(uint a, uint b) {
-    int of_a = objects[a].priority, of_b = objects[b].priority;
+    int of_a = object_at(a).priority, of_b = object_at(b).priority;
     return of_a > of_b || (of_a == of_b && a > b);
 }
 
 // The member of the highest priority, apart from `skipped`; NONE: the ray is outside of everything.
-uint medium_without(uint ray, uint skipped) {
+uint medium_without(Media media, uint skipped) {
+    if (!scene_has(SCENE_NESTED)) {
+        uint member = member_of(media, 0u);
+        return media.count > 0u && member != skipped ? member : NONE;
+    }
     uint best = NONE;
-    for (uint i = 0u; i < paths[ray].media_count; ++i) {
-        uint member = member_of(ray, i);
+    for (uint i = 0u; i < media.count; ++i) {
+        uint member = member_of(media, i);
         bool better = best == NONE || outranks(member, best == NONE ? member : best);
         best = member != skipped && better ? member : best;
     }
@@ -33,10 +45,11 @@ uint medium_without(uint ray, uint skipped) {
 }
 
 // The place of an object among the members, or how many there are.
-uint place_of(uint ray, uint object) {
-    uint place = paths[ray].media_count;
-    for (uint i = 0u; i < paths[ray].media_count; ++i) {
-        place = member_of(ray, i) == object ? i : place;
+uint place_of(Media media, uint object) {
+    if (!scene_has(SCENE_NESTED)) return 0u;
+    uint place = media.count;
+    for (uint i = 0u; i < media.count; ++i) {
+        place = member_of(media, i) == object ? i : place;
     }
     return place;
 }
@@ -48,17 +61,22 @@ struct Crossing {
     uint place;  // of the object among the members; their count: it is entered
 };
 
-Crossing crossing_of(uint ray, uint object) {
-    uint place = place_of(ray, object);
-    bool leaves = place < paths[ray].media_count;
-    uint others = medium_without(ray, object);
-    bool rules = others == NONE || outranks(object, others == NONE ? object : others);
+Crossing crossing_of(Media media, uint object) {
+    uint place = place_of(media, object);
+    bool leaves = place < media.count;
+    uint others = NONE;
+    bool rules = true;
+    if (scene_has(SCENE_NESTED)) {
+        others = medium_without(media, object);
+        rules = others == NONE || outranks(object, others == NONE ? object : others);
+    }
     uint with = rules ? object : others;
     return Crossing(leaves ? with : others, leaves ? others : with, place);
 }
 
 vec3 ior_of(uint medium) {
-    return medium == NONE ? vec3(1.0) : objects[medium == NONE ? 0u : medium].ior;
+    vec3 ior = object_at(medium == NONE ? 0u : medium).ior;
+    return medium == NONE ? vec3(1.0) : ior;
 }
 
 bool disperses(uint medium) {
@@ -68,12 +86,14 @@ bool disperses(uint medium) {
 
 // Whether a ray becomes one a channel at this crossing.
 bool splits(Crossing crossing, uint channels) {
-    return (channels & uint(CHANNELS_ALL)) == uint(CHANNELS_ALL) && (disperses(crossing.before) || disperses(crossing.after));
+    return scene_has(SCENE_DISPERSES) && (channels & uint(CHANNELS_ALL)) == uint(CHANNELS_ALL)
+        && (disperses(crossing.before) || disperses(crossing.after));
 }
 
 // What of the light comes through a way inside a medium.
 vec3 transmittance(uint medium, float way) {
-    vec3 depth = medium == NONE ? vec3(0.0) : objects[medium == NONE ? 0u : medium].absorption * way;
+    vec3 absorption = object_at(medium == NONE ? 0u : medium).absorption;
+    vec3 depth = medium == NONE ? vec3(0.0) : absorption * way;
     return vec3(exp_negative(-depth.x), exp_negative(-depth.y), exp_negative(-depth.z));
 }
 #endif

@@ -31,11 +31,13 @@ bool enters_trust_ball(vec3 o, vec3 d, vec4 center_trust, float nearest, vec2 wi
     float b = center_trust.w;
     float s = -dot3(from_center, d);
     vec3 y0 = from_center + s * d;
-    float under_root = b * b - dot3(y0, y0);
-    float entry = s - sqrt(max(under_root, 0.0));
+    float under_root = b * b - dot3(y0, y0); // the ray enters at s - sqrt(under_root)
     float margin = ENTRY_MARGIN * b;
+    float behind_low = s - (within.x - margin);
+    float behind_high = s - (within.y + margin);
     return under_root >= 0.0 && s + b > 0.0 && s - b <= nearest
-        && entry >= within.x - margin && entry <= within.y + margin;
+        && behind_low >= 0.0 && behind_low * behind_low >= under_root
+        && (behind_high <= 0.0 || behind_high * behind_high <= under_root);
 }
 
 // The unit normal of the polynomial's own level through x.

@@ -1,5 +1,5 @@
-// state: what a ray carries from pass to pass, in four images read and four written; with STATE_QUEUE, in a
-// buffer, in place, but for a kernel that moves rays (STATE_MOVES).
+// state: what a ray carries from pass to pass, in four images read and four written; with QUEUE, in a
+// buffer, in place, but for a kernel that moves rays from one to another.
 //
 // Stands in for the four render targets of the paper (section 5): position, direction, cell; what a
 // ray has accumulated is in its Path. The nearest hit so far is packed among them. The rays of a wave
@@ -42,38 +42,32 @@ Ray load_ray(uint at) {
 }
 #endif
 
-#ifdef STATE_QUEUE
-#if defined(STATE_WRITES) && !defined(STATE_READS) || defined(STATE_MOVES)
-layout(std430, binding = STATE_OUT) writeonly buffer StateOut { StateRay state_out[]; };
-#define STATE_STORED state_out
-#else
-#define STATE_STORED state_in
-#endif
+#ifdef QUEUE
 #ifdef STATE_READS
-#if defined(STATE_WRITES) && !defined(STATE_MOVES)
-layout(std430, binding = STATE_IN) buffer StateIn { StateRay state_in[]; };
-#else
-layout(std430, binding = STATE_IN) readonly buffer StateIn { StateRay state_in[]; };
-#endif
+layout(binding = STATE_IN) uniform usamplerBuffer state_texels; // four a ray
 
 StateRay state_of(uint ray) {
-    return state_in[ray];
+    int at = int(4u * ray);
+    return StateRay(texelFetch(state_texels, at), texelFetch(state_texels, at + 1), texelFetch(state_texels, at + 2),
+                    texelFetch(state_texels, at + 3));
 }
 #endif
 
 #ifdef STATE_WRITES
+layout(std430, binding = STATE_OUT) writeonly buffer StateOut { StateRay state_out[]; };
+
 void store_ray(uint at, Ray ray) {
-    STATE_STORED[at].position = uvec4(floatBitsToUint(ray.origin), floatBitsToUint(ray.hit_t));
-    STATE_STORED[at].direction = uvec4(floatBitsToUint(ray.direction), ray.cells);
-    STATE_STORED[at].cell = uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot);
-    STATE_STORED[at].start.xy = uvec2(ray.left, floatBitsToUint(ray.after));
+    state_out[at].position = uvec4(floatBitsToUint(ray.origin), floatBitsToUint(ray.hit_t));
+    state_out[at].direction = uvec4(floatBitsToUint(ray.direction), ray.cells);
+    state_out[at].cell = uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot);
+    state_out[at].start.xy = uvec2(ray.left, floatBitsToUint(ray.after));
 }
 
 // A ray that has gone on: it starts where it did.
 void store_progress(uint at, Ray ray) {
-    STATE_STORED[at].position.w = floatBitsToUint(ray.hit_t);
-    STATE_STORED[at].direction.w = ray.cells;
-    STATE_STORED[at].cell = uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot);
+    state_out[at].position.w = floatBitsToUint(ray.hit_t);
+    state_out[at].direction.w = ray.cells;
+    state_out[at].cell = uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot);
 }
 #endif
 

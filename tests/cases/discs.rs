@@ -5,10 +5,10 @@ use harness::{
     Bench, Rendered, assert_same_bits, assert_same_film, fibonacci_sphere, plan_of, random,
     render_twin, set_of, wavy_sheet,
 };
-use plan::{Diagnostic, MAX_DISC_PAIRS, Plan, Primary};
+use plan::{Diagnostic, MAX_DISC_PAIRS, Plan, Primary, RayLoop};
 use points::{PointSet, Unwatched};
 use reference::Reference;
-use render::{Records, Renderer};
+use render::Renderer;
 
 const LIGHTS: &str = "
 [[lights]]
@@ -185,9 +185,12 @@ fn every_k_and_long_lists_give_the_same_bytes() {
         assert_same_bits("K", &whole, &bench.render(&small));
     }
     small.cells_per_pass = 0;
-    let [storage, texels] =
-        [Records::Storage, Records::Texels].map(|records| bench.render_with(&small, records));
-    assert_same_bits("records", &storage, &texels);
+    // Images come with storage buffers, the queue with texel buffers.
+    let [images, queue] = [RayLoop::Images, RayLoop::Queue].map(|ray_loop| {
+        small.ray_loop = ray_loop;
+        bench.render(&small)
+    });
+    assert_same_bits("loops", &images, &queue);
     let large = "[image]\nsize = [24, 16]\n[[objects]]\npoints = \"s.ply\"\n\
                  surface = { feature_size = 0.5 }";
     let mut long = plan(large, &[set_of(fibonacci_sphere(60_000))], Primary::Discs);

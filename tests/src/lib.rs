@@ -24,7 +24,7 @@ use kernels::layout;
 use plan::{Picture, Plan, SceneImages};
 use points::{PointSet, Unwatched};
 use reference::Reference;
-use render::{Records, Renderer};
+use render::Renderer;
 use scene::{Scene, Up};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -98,18 +98,21 @@ impl Bench {
     /// Builds and traces a plan on the device.
     #[must_use]
     pub fn render(&self, plan: &Plan) -> Rendered {
-        self.render_with(plan, Records::best_for(&self.device, plan.cloud.points.len()))
+        self.render_within(plan, None)
     }
 
-    /// The same with a given way to read polynomials.
+    /// The same; in each pass, a ray may spend no more than so many loop iterations if a number is given.
     #[must_use]
-    pub fn render_with(&self, plan: &Plan, records: Records) -> Rendered {
-        self.with_device(|device| rendered(device, plan, records))
+    pub fn render_within(&self, plan: &Plan, work: Option<u32>) -> Rendered {
+        self.with_device(|device| rendered(device, plan, work))
     }
 }
 
-fn rendered(device: &Arc<Device>, plan: &Plan, records: Records) -> Rendered {
-    let mut renderer = Renderer::with_records(device, plan, records, &Unwatched).expect("builds");
+fn rendered(device: &Arc<Device>, plan: &Plan, work: Option<u32>) -> Rendered {
+    let mut renderer = Renderer::new(device, plan, &Unwatched).expect("builds");
+    if let Some(work) = work {
+        renderer.set_budget(work);
+    }
     let (picture, stats) = renderer.frame(plan, &Unwatched).expect("renders");
     let surfaces = renderer.surfaces();
     let mut polynomials =
@@ -117,8 +120,8 @@ fn rendered(device: &Arc<Device>, plan: &Plan, records: Records) -> Rendered {
     surfaces.polynomials.read(0, &mut polynomials).expect("polynomials");
     let mut cells = vec![[0u32; 2]; surfaces.grid.cell_count() as usize];
     surfaces.cells.read(0, &mut cells).expect("cells");
-    let listed = cells.iter().map(|range| range[1]).max().unwrap_or(0);
-    let mut slots = vec![0u32; listed as usize];
+    let listed = cells.iter().filter(|range| range[0] < range[1]).map(|range| range[1]).max();
+    let mut slots = vec![0u32; listed.unwrap_or(0) as usize];
     surfaces.slots.read(0, &mut slots).expect("slots");
     Rendered {
         polynomials,

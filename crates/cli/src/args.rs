@@ -97,6 +97,9 @@ pub struct BenchArgs {
     /// Frames to time, after one to warm up
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub runs: u32,
+    /// Beside each build, time the neighbours and fits of the same points on the CPU with a k-d tree
+    #[arg(long)]
+    pub cpu_preparation: bool,
     /// Leave out rows of more generated points
     #[arg(long, value_name = "N")]
     pub max_points: Option<u32>,

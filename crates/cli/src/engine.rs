@@ -9,7 +9,7 @@ use gpu::{Device, DeviceChoice, Instance, InstanceOptions};
 use kernels::layout::{FitOutcome, GridInfo};
 use plan::{Picture, Plan, Rays};
 use reference::Reference;
-use render::{Renderer, Traversal};
+use render::{RayLoop, Renderer, Traversal};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -199,6 +199,33 @@ impl Built {
             BuiltOn::Gpu(renderer) => &renderer.surfaces().grid,
             BuiltOn::Single(reference) => &reference.grid,
             BuiltOn::Double(reference) => &reference.grid,
+        }
+    }
+
+    /// Where the ray state lives on the device; the CPU has none.
+    pub fn ray_loop(&self) -> Option<&'static str> {
+        match &self.surfaces {
+            BuiltOn::Gpu(renderer) => Some(match renderer.ray_loop() {
+                RayLoop::Images => "images",
+                RayLoop::Queue => "queue",
+            }),
+            BuiltOn::Single(_) | BuiltOn::Double(_) => None,
+        }
+    }
+
+    /// Milliseconds of each kernel of the build, where it ran on a device.
+    pub fn kernels(&self) -> &[(&'static str, f64)] {
+        match &self.surfaces {
+            BuiltOn::Gpu(renderer) => &renderer.surfaces().kernels,
+            BuiltOn::Single(_) | BuiltOn::Double(_) => &[],
+        }
+    }
+
+    /// Points whose neighbours the device left to the CPU.
+    pub fn searched_on_cpu(&self) -> u64 {
+        match &self.surfaces {
+            BuiltOn::Gpu(renderer) => renderer.surfaces().searched_on_host,
+            BuiltOn::Single(_) | BuiltOn::Double(_) => 0,
         }
     }
 

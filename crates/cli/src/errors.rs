@@ -124,7 +124,9 @@ impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
         match error {
             RenderError::Interrupted => Self::interrupted(),
-            error @ RenderError::Images { .. } => Self::new(Exit::Exhausted, &error),
+            error @ (RenderError::Images { .. } | RenderError::Memory(_)) => {
+                Self::new(Exit::Exhausted, &error)
+            }
             RenderError::Gpu(error @ GpuError::DeviceLost { .. }) => Self::new(Exit::Lost, &error),
             // The device was open already, so it is the device that gave up.
             RenderError::Gpu(error) => Self::new(Exit::Exhausted, &error),

@@ -28,6 +28,12 @@ pub struct Row {
     pub build_ms: Spread,
     /// How many builds that is of. Where there are several, the first is not among them.
     pub builds: u32,
+    /// The same on the CPU with a k-d tree, neighbours and fits alone; where `bench --cpu-preparation` asks for it.
+    pub cpu_preparation_ms: Option<Spread>,
+    /// Milliseconds of each kernel of the last build.
+    pub build_kernels: BTreeMap<&'static str, f64>,
+    /// Points whose neighbours the device left to the CPU, since its search is bounded.
+    pub searched_on_cpu: u64,
     /// What of the first build and frame the driver took to make pipelines; not in `trace_ms`.
     pub pipelines_ms: f64,
     /// The frame before those that are timed, with what the driver compiles at a first dispatch.
@@ -44,6 +50,11 @@ pub struct Row {
     pub rays_per_second: RaysPerSecond,
     /// Cells a ray may cross in a pass; 0: as many as it likes.
     pub cells_per_pass: u32,
+    /// How camera rays found their first hit, as `render.primary` has it: what the scene asked for, or was chosen.
+    pub primary: &'static str,
+    /// Where the ray state lived, as `render.loop` has it; `null` on the CPU reference.
+    #[serde(rename = "loop")]
+    pub ray_loop: Option<&'static str>,
     /// Dispatches of the traversal.
     pub passes: u32,
     /// Points that a ray was tested against, on average.
@@ -175,6 +186,9 @@ impl Row {
             gpu_ms: frame.gpu_ms().map(|ms| Spread { median: ms, min: ms, max: ms }),
             build_ms: Spread::of(&[built.duration]),
             builds: 1,
+            cpu_preparation_ms: None,
+            build_kernels: built.kernels().iter().copied().collect(),
+            searched_on_cpu: built.searched_on_cpu(),
             pipelines_ms: milliseconds(built.pipelines + frame.pipelines),
             warm_up_ms: None,
             frames_per_second: 1e3 / trace_ms.median.max(1e-6),
@@ -183,6 +197,12 @@ impl Row {
             rays,
             rays_per_second: RaysPerSecond::new(&rays, trace_ms.median, &frame.traversal),
             cells_per_pass: plan.cells_per_pass,
+            primary: if plan.tiles().iter().any(|tile| plan.by_discs(tile)) {
+                "discs"
+            } else {
+                "grid"
+            },
+            ray_loop: built.ray_loop(),
             passes: frame.passes,
             tests_per_ray: frame.tests as f64 / frame.rays.all().max(1) as f64,
             bytes_per_point: (built.bytes() + plan.volumes.bytes()) as f64 / points.max(1) as f64,

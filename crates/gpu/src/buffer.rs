@@ -6,7 +6,7 @@
 
 use crate::device::Device;
 use crate::error::GpuError;
-use crate::kernel::TexelType;
+use crate::kernel::{Texel, TexelType};
 use crate::next_id;
 use ash::vk;
 use bytemuck::{AnyBitPattern, NoUninit};
@@ -18,7 +18,7 @@ use std::mem::MaybeUninit;
 use std::ptr::NonNull;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Bytes of a texel of a buffer bound as [`Binding::UniformTexelBuffer`](crate::Binding).
+/// Bytes of the largest texel of a buffer bound as [`Binding::UniformTexelBuffer`](crate::Binding).
 const TEXEL_BYTES: u64 = 16;
 
 /// A storage buffer. Cloning gives another handle to the same buffer; the last one frees it.
@@ -33,8 +33,8 @@ pub(crate) struct BufferInner {
     pub(crate) id: u64,
     pub(crate) name: &'static str,
     allocation: Option<Allocation>,
-    /// One view for each [`TexelType`], null until asked for.
-    texel_views: Mutex<[vk::BufferView; 3]>,
+    /// By format.
+    texel_views: Mutex<Vec<(vk::Format, vk::BufferView)>>,
     device: Arc<Device>,
 }
 
@@ -42,11 +42,17 @@ impl Buffer {
     /// A buffer whose content is undefined. Zero bytes become 16, so that an empty list can be
     /// bound like any other.
     pub fn new(device: &Arc<Device>, name: &'static str, bytes: u64) -> Result<Self, GpuError> {
-        let bytes = if bytes == 0 { TEXEL_BYTES } else { bytes };
         let limit = device.limits().max_storage_buffer_range;
         if bytes > limit {
             return Err(GpuError::BufferTooLarge { name, needed: bytes, limit });
         }
+        Self::paged(device, name, bytes)
+    }
+
+    /// The same for one that may be longer than a storage buffer binding: it is bound as texels, or in parts
+    /// (`PassBuilder::buffer_part`).
+    pub fn paged(device: &Arc<Device>, name: &'static str, bytes: u64) -> Result<Self, GpuError> {
+        let bytes = if bytes == 0 { TEXEL_BYTES } else { bytes };
         let raw = &device.raw;
         // Whole texels, so that a texel view reaches the end.
         let info = vk::BufferCreateInfo::default().size(bytes.next_multiple_of(TEXEL_BYTES)).usage(
@@ -88,6 +94,17 @@ impl Buffer {
         data: &[T],
     ) -> Result<Self, GpuError> {
         let buffer = Self::new(device, name, size_of_val(data) as u64)?;
+        buffer.write(0, data)?;
+        Ok(buffer)
+    }
+
+    /// A buffer that holds `data`, and may be longer than a storage buffer binding.
+    pub fn paged_from_slice<T: NoUninit>(
+        device: &Arc<Device>,
+        name: &'static str,
+        data: &[T],
+    ) -> Result<Self, GpuError> {
+        let buffer = Self::paged(device, name, size_of_val(data) as u64)?;
         buffer.write(0, data)?;
         Ok(buffer)
     }
@@ -202,27 +219,33 @@ impl BufferInner {
         if wanted { allocation.mapped_ptr() } else { None }
     }
 
-    /// The buffer seen as texels of 16 bytes.
-    pub(crate) fn texel_view(&self, texel: TexelType) -> Result<vk::BufferView, GpuError> {
-        let needed = self.bytes.div_ceil(TEXEL_BYTES);
+    /// The buffer seen as texels.
+    pub(crate) fn texel_view(
+        &self,
+        scalar: TexelType,
+        texel: Texel,
+    ) -> Result<vk::BufferView, GpuError> {
+        let needed = self.bytes.div_ceil(texel.bytes());
         let limit = u64::from(self.device.limits().max_texel_buffer_elements);
         if needed > limit {
             return Err(GpuError::TexelBufferTooLarge { name: self.name, needed, limit });
         }
         let mut views = self.texel_views.lock().unwrap_or_else(PoisonError::into_inner);
-        let view = &mut views[texel as usize];
-        if *view == vk::BufferView::null() {
-            let info = vk::BufferViewCreateInfo::default()
-                .buffer(self.raw)
-                .format(texel.format())
-                .range(vk::WHOLE_SIZE);
-            // SAFETY: the buffer is alive, has memory and the usage, is a whole number of texels
-            // within the limit, and all devices allow these formats.
-            *view = unsafe { self.device.raw.create_buffer_view(&info, None) }
-                .map_err(GpuError::call("vkCreateBufferView", self.name))?;
-            self.device.set_name(*view, self.name);
+        let format = scalar.format(texel);
+        if let Some(&(_, view)) = views.iter().find(|view| view.0 == format) {
+            return Ok(view);
         }
-        Ok(*view)
+        let info = vk::BufferViewCreateInfo::default()
+            .buffer(self.raw)
+            .format(format)
+            .range(needed * texel.bytes());
+        // SAFETY: the buffer is alive, has memory and the usage, holds so many texels, as many as
+        // the limit allows, and all devices allow the format.
+        let view = unsafe { self.device.raw.create_buffer_view(&info, None) }
+            .map_err(GpuError::call("vkCreateBufferView", self.name))?;
+        self.device.set_name(view, self.name);
+        views.push((format, view));
+        Ok(view)
     }
 }
 
@@ -232,9 +255,9 @@ impl Drop for BufferInner {
         let views = self.texel_views.get_mut().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: created by this device; a `Recorder` holds an `Arc` of every buffer it used
         // until its fence has signalled, so no pending work refers to it. Descriptor sets that
-        // still name it are found by its id, and so never used again. Null views are ignored.
+        // still name it are found by its id, and so never used again.
         unsafe {
-            for &mut view in views {
+            for &mut (_, view) in views {
                 raw.destroy_buffer_view(view, None);
             }
             raw.destroy_buffer(self.raw, None);

@@ -8,7 +8,7 @@ use crate::buffer::Buffer;
 use crate::device::Device;
 use crate::error::GpuError;
 use crate::image::Image;
-use crate::kernel::{Binding, KernelInner};
+use crate::kernel::{Binding, KernelInner, Texel};
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -23,14 +23,15 @@ const MAX_SETS: usize = 1024;
 /// What is bound at a slot of a kernel.
 #[derive(Debug, Clone)]
 pub(crate) enum Bound {
-    Buffer(Buffer),
+    /// And which part of it, where it is bound as storage: first byte and length.
+    Buffer(Buffer, [u64; 2]),
     Image(Image),
 }
 
 impl Bound {
     pub(crate) fn id(&self) -> u64 {
         match self {
-            Self::Buffer(buffer) => buffer.id(),
+            Self::Buffer(buffer, _) => buffer.id(),
             Self::Image(image) => image.id(),
         }
     }
@@ -41,7 +42,7 @@ pub(crate) struct Descriptors {
     pools: Vec<vk::DescriptorPool>,
     /// The first pool that may have room.
     open_pool: usize,
-    /// By kernel id and then the resources' ids, in the order of the kernel's slots.
+    /// By kernel id and then the resources' ids, with their parts, in the order of the kernel's slots.
     sets: HashMap<Vec<u64>, vk::DescriptorSet>,
     /// The key of the set looked for, kept for its memory.
     key: Vec<u64>,
@@ -68,7 +69,12 @@ impl Descriptors {
     ) -> Result<vk::DescriptorSet, GpuError> {
         self.key.clear();
         self.key.push(kernel.id);
-        self.key.extend(bound.iter().map(Bound::id));
+        for bound in bound {
+            self.key.push(bound.id());
+            if let Bound::Buffer(_, part) = bound {
+                self.key.extend(part);
+            }
+        }
         if let Some(&set) = self.sets.get(&self.key) {
             return Ok(set);
         }
@@ -137,7 +143,7 @@ impl Descriptors {
         let sizes = [
             of_kind(Binding::StorageBuffer),
             of_kind(Binding::StorageImage),
-            of_kind(Binding::UniformTexelBuffer),
+            of_kind(Binding::UniformTexelBuffer(Texel::Four)),
         ];
         let info = vk::DescriptorPoolCreateInfo::default().max_sets(POOL_SETS).pool_sizes(&sizes);
         // SAFETY: the counts are above zero.
@@ -160,14 +166,15 @@ impl Descriptors {
                 .descriptor_type(slot.kind.descriptor_type());
             let (buffer, view, image);
             let write = match (slot.kind, bound) {
-                (Binding::UniformTexelBuffer, Bound::Buffer(bound)) => {
-                    view = [bound.inner.texel_view(slot.texel)?];
+                (Binding::UniformTexelBuffer(texel), Bound::Buffer(bound, _)) => {
+                    view = [bound.inner.texel_view(slot.texel, texel)?];
                     write.texel_buffer_view(&view)
                 }
-                (_, Bound::Buffer(bound)) => {
+                (_, Bound::Buffer(bound, [offset, bytes])) => {
                     buffer = [vk::DescriptorBufferInfo::default()
                         .buffer(bound.inner.raw)
-                        .range(bound.inner.bytes)];
+                        .offset(*offset)
+                        .range(*bytes)];
                     write.buffer_info(&buffer)
                 }
                 (_, Bound::Image(bound)) => {

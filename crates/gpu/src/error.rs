@@ -79,7 +79,7 @@ pub enum GpuError {
     TexelBufferTooLarge {
         /// The buffer.
         name: &'static str,
-        /// Texels of 16 bytes in the buffer.
+        /// Texels in the buffer.
         needed: u64,
         /// Texels allowed.
         limit: u64,

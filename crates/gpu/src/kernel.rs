@@ -21,11 +21,34 @@ pub enum Binding {
     /// An [`Image`](crate::Image) as `image2D` or `uimage2D`.
     StorageImage,
     /// A [`Buffer`](crate::Buffer) as `samplerBuffer`, `isamplerBuffer` or `usamplerBuffer`, with
-    /// texels of four values, 16 bytes. Which of the three is read from the module.
-    UniformTexelBuffer,
+    /// texels of so many values of 4 bytes. Which of the three is read from the module.
+    UniformTexelBuffer(Texel),
 }
 
-/// The type of the four values of a texel.
+/// How many values a texel of a buffer has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Texel {
+    /// One: a list of words.
+    One,
+    /// Two: a list of pairs.
+    Two,
+    /// Four: records of 16 bytes, or of multiples of that.
+    Four,
+}
+
+impl Texel {
+    /// Of a texel.
+    #[must_use]
+    pub fn bytes(self) -> u64 {
+        match self {
+            Self::One => 4,
+            Self::Two => 8,
+            Self::Four => 16,
+        }
+    }
+}
+
+/// The type of a texel's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TexelType {
     Float,
@@ -78,6 +101,22 @@ impl Kernel {
         bindings: &[(u32, Binding)],
         push_bytes: usize,
     ) -> Result<Self, GpuError> {
+        Self::specialized(device, name, spirv, bindings, push_bytes, None)
+    }
+
+    /// The same with a value for the module's specialization constant 0, an integer of 32 bits. Code that it
+    /// rules out is not compiled. Without a value, the module's own counts.
+    ///
+    /// # Panics
+    /// As [`Kernel::new`].
+    pub fn specialized(
+        device: &Arc<Device>,
+        name: &'static str,
+        spirv: &[u32],
+        bindings: &[(u32, Binding)],
+        push_bytes: usize,
+        constant: Option<u32>,
+    ) -> Result<Self, GpuError> {
         assert!(push_bytes.is_multiple_of(4), "kernel '{name}': {push_bytes} push constant bytes");
         let module =
             Module::read(spirv).map_err(|reason| GpuError::BadModule { kernel: name, reason })?;
@@ -90,6 +129,7 @@ impl Kernel {
             entry: module.entry,
             bindings: bindings.to_vec(),
             push_bytes,
+            constant,
         };
         let inner = KernelInner {
             pipeline: OnceLock::new(),
@@ -146,17 +186,24 @@ impl Binding {
         match self {
             Self::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
             Self::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
-            Self::UniformTexelBuffer => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
+            Self::UniformTexelBuffer(_) => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
         }
     }
 }
 
 impl TexelType {
-    pub(crate) fn format(self) -> vk::Format {
-        match self {
-            Self::Float => vk::Format::R32G32B32A32_SFLOAT,
-            Self::Int => vk::Format::R32G32B32A32_SINT,
-            Self::Uint => vk::Format::R32G32B32A32_UINT,
+    /// All devices allow these for uniform texel buffers.
+    pub(crate) fn format(self, texel: Texel) -> vk::Format {
+        match (self, texel) {
+            (Self::Float, Texel::One) => vk::Format::R32_SFLOAT,
+            (Self::Float, Texel::Two) => vk::Format::R32G32_SFLOAT,
+            (Self::Float, Texel::Four) => vk::Format::R32G32B32A32_SFLOAT,
+            (Self::Int, Texel::One) => vk::Format::R32_SINT,
+            (Self::Int, Texel::Two) => vk::Format::R32G32_SINT,
+            (Self::Int, Texel::Four) => vk::Format::R32G32B32A32_SINT,
+            (Self::Uint, Texel::One) => vk::Format::R32_UINT,
+            (Self::Uint, Texel::Two) => vk::Format::R32G32_UINT,
+            (Self::Uint, Texel::Four) => vk::Format::R32G32B32A32_UINT,
         }
     }
 }
@@ -176,11 +223,14 @@ fn slots(name: &str, bindings: &[(u32, Binding)], module: &Module) -> Vec<Slot> 
         let slot = slots.iter_mut().find(|slot| slot.binding == binding);
         assert!(slot.is_some(), "kernel '{name}': binding {binding} is not listed");
         let Some(slot) = slot else { continue };
-        let (kind, texel) = match resource.kind {
-            ResourceKind::StorageBuffer => (Some(Binding::StorageBuffer), slot.texel),
-            ResourceKind::StorageImage(texel) => (Some(Binding::StorageImage), texel),
-            ResourceKind::UniformTexelBuffer(texel) => (Some(Binding::UniformTexelBuffer), texel),
-            ResourceKind::Other => (None, slot.texel),
+        let (kind, texel) = match (resource.kind, slot.kind) {
+            (ResourceKind::StorageBuffer, _) => (Some(Binding::StorageBuffer), slot.texel),
+            (ResourceKind::StorageImage(texel), _) => (Some(Binding::StorageImage), texel),
+            // How many values a texel has is not in the module.
+            (ResourceKind::UniformTexelBuffer(texel), Binding::UniformTexelBuffer(_)) => {
+                (Some(slot.kind), texel)
+            }
+            (ResourceKind::UniformTexelBuffer(_) | ResourceKind::Other, _) => (None, slot.texel),
         };
         assert_eq!(
             kind,
@@ -208,7 +258,8 @@ fn check_limits(
     let count = |kind| slots.iter().filter(|slot| slot.kind == kind).count() as u32;
     let buffers = count(Binding::StorageBuffer);
     let images = count(Binding::StorageImage);
-    let texel_buffers = count(Binding::UniformTexelBuffer);
+    let is_texels = |slot: &&Slot| matches!(slot.kind, Binding::UniformTexelBuffer(_));
+    let texel_buffers = slots.iter().filter(is_texels).count() as u32;
     let [x, y, z] = module.group_size;
     let invocations = [y, z].into_iter().fold(x, u32::saturating_mul);
     let [max_x, max_y, max_z] = limits.max_compute_work_group_size;

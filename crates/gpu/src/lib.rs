@@ -38,8 +38,8 @@ pub use device::{Device, Limits};
 pub use error::GpuError;
 pub use image::{Image, ImageFormat};
 pub use instance::{Instance, InstanceOptions};
-pub use kernel::{Binding, Kernel};
-pub use recorder::{PassBuilder, Recorder, Timings};
+pub use kernel::{Binding, Kernel, Texel};
+pub use recorder::{PART_ALIGNMENT, PassBuilder, Recorder, Timings};
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -24,6 +24,8 @@ pub(crate) struct PipelineKey {
     pub(crate) entry: CString,
     pub(crate) bindings: Vec<(u32, Binding)>,
     pub(crate) push_bytes: usize,
+    /// Of the specialization constant 0, where the module has one.
+    pub(crate) constant: Option<u32>,
 }
 
 /// A pipeline and what it takes to use it. Lives as long as its device.
@@ -100,10 +102,18 @@ impl Pipeline {
         let shader = unsafe { raw.create_shader_module(&info, None) }
             .map_err(GpuError::call("vkCreateShaderModule", key.name))?;
         device.set_name(shader, key.name);
+        let constant = key.constant.unwrap_or_default().to_ne_bytes();
+        let entries = [vk::SpecializationMapEntry::default().size(constant.len())];
+        let specialization =
+            vk::SpecializationInfo::default().map_entries(&entries).data(&constant);
         let stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
             .module(shader)
             .name(&key.entry);
+        let stage = match key.constant {
+            Some(_) => stage.specialization_info(&specialization),
+            None => stage,
+        };
         let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(self.layout);
         // SAFETY: the module has this entry point; the layout was just made and holds every
         // binding of the module. A pipeline does not need its shader module once it exists.

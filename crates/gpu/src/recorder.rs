@@ -24,6 +24,9 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
 
+/// What the offset of a part of a storage buffer must be a multiple of, on any device.
+pub const PART_ALIGNMENT: u64 = 256;
+
 /// Bytes of the three workgroup counts of an indirect dispatch.
 const INDIRECT_BYTES: u64 = 12;
 
@@ -342,13 +345,38 @@ impl PassBuilder<'_> {
     ///
     /// # Panics
     /// Where the kernel has no such binding, an image there, or the binding is taken.
-    pub fn buffer(mut self, binding: u32, buffer: &Buffer) -> Self {
+    pub fn buffer(self, binding: u32, buffer: &Buffer) -> Self {
+        self.buffer_part(binding, buffer, 0, buffer.bytes())
+    }
+
+    /// Binds a part of a buffer as storage. Its offset is a multiple of [`PART_ALIGNMENT`].
+    ///
+    /// # Panics
+    /// As [`buffer`](Self::buffer), and where the part leaves the buffer, begins at another offset, or is not
+    /// the whole and the kernel reads texels.
+    pub fn buffer_part(mut self, binding: u32, buffer: &Buffer, offset: u64, bytes: u64) -> Self {
         self.recorder.assert_same_device(buffer.inner.device(), buffer.name());
         let slot = self.slot(binding);
         let kind = self.kernel.inner.slots[slot].kind;
         let is_buffer = kind != Binding::StorageImage;
         assert!(is_buffer, "pass '{}': binding {binding} is an image", self.name);
-        self.bound[slot] = Some(Bound::Buffer(buffer.clone()));
+        buffer.inner.assert_in_range("binding", offset, bytes);
+        assert!(
+            offset.is_multiple_of(PART_ALIGNMENT) && bytes > 0,
+            "pass '{}': a part of {bytes} bytes of buffer '{}' at {offset}",
+            self.name,
+            buffer.name()
+        );
+        if matches!(kind, Binding::UniformTexelBuffer(_)) {
+            assert!(bytes == buffer.bytes(), "pass '{}': texels are bound as a whole", self.name);
+        } else {
+            let limit = self.recorder.device.limits().max_storage_buffer_range;
+            if bytes > limit {
+                let error = GpuError::BufferTooLarge { name: buffer.name(), needed: bytes, limit };
+                self.recorder.error.get_or_insert(error);
+            }
+        }
+        self.bound[slot] = Some(Bound::Buffer(buffer.clone(), [offset, bytes]));
         self
     }
 
@@ -465,7 +493,7 @@ impl Recorder {
         for (slot, bound) in kernel.slots.iter().zip(bound) {
             uses.push((bound.id(), slot.access));
             self.held.entry(bound.id()).or_insert_with(|| match bound {
-                Bound::Buffer(buffer) => Arc::clone(&buffer.inner) as _,
+                Bound::Buffer(buffer, _) => Arc::clone(&buffer.inner) as _,
                 Bound::Image(image) => Arc::clone(&image.inner) as _,
             });
         }

@@ -58,8 +58,6 @@ constants! {
     DIGIT_BITS = 8;
     /// Pixels that a screen tile has along each side.
     DISC_TILE = 8;
-    /// Binding of the discs' build: polynomials.
-    DISC_POLYNOMIALS = 0;
     /// Binding of the discs' build: counts, then offsets, by slot.
     DISC_OFFSETS = 1;
     /// Binding of the discs' build: screen tile and rank of each pair.
@@ -80,6 +78,38 @@ constants! {
     FIT_SIZES = 4;
     /// Binding of `fit_polynomials`: [`Rim`]s of the batch.
     FIT_RIMS = 5;
+    /// Binding of the neighbour search: every point.
+    SEARCH_POINTS = 0;
+    /// Binding of the neighbour search: [`SearchNode`]s of an object, level over level.
+    SEARCH_NODES = 1;
+    /// Binding of the neighbour search: of each point of the batch, d² that holds k others.
+    SEARCH_BOUNDS = 2;
+    /// Binding of the neighbour search: leaves that the balls of each leaf of the batch touch.
+    SEARCH_LEAVES = 3;
+    /// Binding of the neighbour search: how many those are, or [`NONE`]: more than there is room for.
+    SEARCH_COUNTS = 4;
+    /// Binding of the neighbour search: neighbours of the batch's points.
+    SEARCH_LISTS = 5;
+    /// Binding of the neighbour search: leaves of the batch that are looked at again.
+    SEARCH_GROUPS = 6;
+    /// Binding of `find_neighbors` without ties: which leaves of the batch have some all the same.
+    SEARCH_TIES = 7;
+    /// Consecutive slots that share a box, and so a list of leaves; children of a node.
+    LEAF_POINTS = 8;
+    /// Levels of boxes, at most.
+    LEAF_LEVELS = 10;
+    /// Bits of an entry of a list of leaves that say which; the others say for which points.
+    LEAF_BITS = 24;
+    /// Boxes that the search for one list of leaves may look at.
+    LEAF_STEPS = 32_768;
+    /// Binding of `smooth_sizes`: every point.
+    SMOOTH_POINTS = 0;
+    /// Binding of `smooth_sizes`: neighbours of the batch's points.
+    SMOOTH_LISTS = 1;
+    /// Binding of `smooth_sizes`: distance of each point to its last neighbour, by slot.
+    SMOOTH_REACHES = 2;
+    /// Binding of `smooth_sizes`: h by slot.
+    SMOOTH_SIZES = 3;
     /// Binding of `clip_balls`: [`BallClip`]s.
     CLIP_CLIPS = 0;
     /// Binding of `clip_balls`: polynomials.
@@ -98,6 +128,22 @@ constants! {
     GRID_SLOTS = 5;
     /// Binding of the grid build: first and past-the-last pair of each cell.
     GRID_CELLS = 6;
+    /// Binding of the grid build: counts, then offsets, of large balls alone, by ordinal.
+    GRID_LARGE = 7;
+    /// Binding of `grow_marks`: cells that are marked, 32 of a row a word.
+    SKIP_MARKS_IN = 8;
+    /// Binding of `mark_occupied` and `grow_marks`: the cells that they mark.
+    SKIP_MARKS_OUT = 9;
+    /// Binding of `skip_cells`: cells with points.
+    SKIP_OCCUPIED = 10;
+    /// Binding of `skip_cells`: those at most one cell from these.
+    SKIP_BESIDE = 11;
+    /// Binding of `skip_cells`: at most two.
+    SKIP_NEAR = 12;
+    /// Binding of `skip_cells`: at most three.
+    SKIP_FAR = 13;
+    /// Cells from an empty one to the next that may not be: no greater distance is told apart.
+    MOST_SKIPPED = 4;
     /// Binding of the scan: values, turned into prefix sums in place.
     SCAN_VALUES = 0;
     /// Binding of the scan: sums of runs, or what comes before each.
@@ -132,8 +178,6 @@ constants! {
     STATE_OUT = 4;
     /// Binding of the tracing kernels: [`GridInfo`].
     TRACE_INFO = 8;
-    /// Binding of `disc_trace`: ranks of the points of the screen tiles.
-    TRACE_KEYS = 8;
     /// Binding of `grid_trace`: range of each cell; of `disc_trace`: of each screen tile.
     TRACE_CELLS = 9;
     /// Binding of `grid_trace`: points of the cells; of `disc_trace`: of the screen tiles.
@@ -162,9 +206,9 @@ constants! {
     WAVE_PATHS = 21;
     /// Binding of `scatter`: the [`Path`]s of the next wave.
     WAVE_NEXT_PATHS = 22;
-    /// Binding of the kernels of a wave: whether each ray hit a diffuse surface, then offsets.
+    /// Binding of the kernels of a wave: marks of the rays that hit a diffuse surface.
     WAVE_LIT = 23;
-    /// Binding of the kernels of a wave: rays of the next wave that each makes, then offsets.
+    /// Binding of `scatter`: where the rays that those of each word of marks make begin in the next wave.
     WAVE_NEXT = 24;
     /// Binding of the kernels of a wave: counts of rays, four u32.
     WAVE_TALLY = 25;
@@ -210,9 +254,9 @@ constants! {
     MARCH_STATE = 37;
     /// Binding of `march`: 1/h by point, if any volume has particles.
     MARCH_LENGTHS = 38;
-    /// Binding of `mark_live` and `list_live`: whether each ray lives, then offsets of those.
+    /// Binding of `count_marked` and `list_marked`: marks of each word, then offsets.
     LIVE_OFFSETS = 39;
-    /// Binding of `list_live` and `grid_trace`: the rays that live.
+    /// Binding of `list_marked` and `grid_trace`: the rays that are marked; those that live.
     LIVE_RAYS = 40;
     /// Binding of `isosurface`: [`IsoSearch`] by ray.
     ISO_SEARCHES = 41;
@@ -220,6 +264,60 @@ constants! {
     MARCH_LIGHT = 42;
     /// Binding of `point_lights` and `march_lit`: what of each light's reaches each point of a volume.
     MARCH_VISIBLE = 43;
+    /// Binding of `camera_trace` and `disc_trace`: first and past-the-last entry of each screen tile.
+    DISC_RANGES_IN = 44;
+    /// Binding of `camera_trace` and `disc_trace`: front to back within a screen tile.
+    DISC_KEYS_IN = 45;
+    /// Binding of `camera_trace` and `disc_trace`: points of the screen tiles.
+    DISC_SLOTS_IN = 46;
+    /// Binding of the kernels of a wave: [`LitHit`] by ray.
+    WAVE_LIT_HITS = 47;
+    /// Binding of `count_marked` and `list_marked`: a bit a ray.
+    WAVE_MARKS = 48;
+    /// Binding of the kernels of a wave: marks of the rays that hit what is not diffuse; of `scatter`, their list.
+    WAVE_SCATTERING = 49;
+    /// Binding of the kernels of a wave: two marks a ray, for the rays of the next wave that it makes.
+    WAVE_NEXT_MARKS = 50;
+    /// Binding of `list_marked`: the rays whose marks these are, where they are listed.
+    LIST_IN = 51;
+    /// [`WaveParams::flags`]: rays come from the camera.
+    WAVE_FROM_CAMERA = 1;
+    /// [`WaveParams::flags`]: all rays have the camera's path, but for the pixel.
+    WAVE_SHARES_PATH = 2;
+    /// Of the constant that kernels are specialized by: rays that hit nothing see an image.
+    SCENE_ENVIRONMENT = 1;
+    /// Normals of an object are blended.
+    SCENE_BLENDS = 2;
+    /// There is light, and `shade` writes the colours of diffuse hits.
+    SCENE_LIGHTS = 4;
+    /// What each channel lets through is written.
+    SCENE_ALPHA = 8;
+    /// Cells crossed, points hit and iterations are written.
+    SCENE_DIAGNOSTICS = 16;
+    /// Points of an object have colours, or places in a texture.
+    SCENE_VALUES = 32;
+    /// An object has a texture.
+    SCENE_TEXTURES = 64;
+    /// A pixel has several samples.
+    SCENE_SAMPLES = 128;
+    /// Hits of an object are refined.
+    SCENE_REFINES = 256;
+    /// An object is diffuse.
+    SCENE_DIFFUSE = 512;
+    /// One is not.
+    SCENE_SCATTERS = 1024;
+    /// Several objects are of glass, and rays may be inside more than one.
+    SCENE_NESTED = 2048;
+    /// Glass has indices by channel, and rays become three.
+    SCENE_DISPERSES = 4096;
+    /// Glass absorbs.
+    SCENE_ABSORBS = 8192;
+    /// Whether glass reflects or refracts is drawn.
+    SCENE_CHANCE = 16384;
+    /// Paths carry what volumes emit.
+    SCENE_VOLUMES = 32768;
+    /// More than one light.
+    SCENE_MANY_LIGHTS = 65536;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
     VOLUME_SHEPARD = 0;
     /// [`VolumeInfo::kernel`] of the weighted sum.
@@ -370,6 +468,89 @@ pub struct Rim {
 }
 gpu_layout!(Rim, 20, { outward: 0, reach: 12, openness: 16 });
 
+/// The box around [`LEAF_POINTS`] points, or around as many boxes. Empty where `low` is above `high`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct SearchNode {
+    /// Lowest corner.
+    pub low: [f32; 3],
+    /// The first of the boxes inside, or [`NONE`]: points are.
+    pub child: u32,
+    /// Highest corner.
+    pub high: [f32; 3],
+    /// The box to look at once this one and all inside are done, or [`NONE`].
+    pub next: u32,
+}
+gpu_layout!(SearchNode, 32, { low: 0, child: 12, high: 16, next: 28 });
+
+/// Parameters of `leaf_boxes` and `node_boxes`: one level of the boxes of an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct LevelParams {
+    /// Of the object.
+    pub first_slot: u32,
+    /// Of the object.
+    pub point_count: u32,
+    /// k.
+    pub neighbors: u32,
+    /// 0: the boxes of points.
+    pub level: u32,
+    /// The highest level: it has [`LEAF_POINTS`] boxes.
+    pub top: u32,
+    /// Boxes of this level, a multiple of [`LEAF_POINTS`].
+    pub count: u32,
+    /// First box of each level.
+    pub offsets: [u32; LEAF_LEVELS as usize],
+}
+gpu_layout!(LevelParams, 64, {
+    first_slot: 0, point_count: 4, neighbors: 8, level: 12, top: 16, count: 20, offsets: 24,
+});
+
+/// Parameters of the neighbour search for one batch of points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct SearchParams {
+    /// Of the object.
+    pub first_slot: u32,
+    /// Of the object.
+    pub point_count: u32,
+    /// Place in the object of the batch's first point, a multiple of [`LEAF_POINTS`].
+    pub batch_first: u32,
+    /// Points of the batch.
+    pub batch_count: u32,
+    /// k: less than `point_count`, or 1.
+    pub neighbors: u32,
+    /// Entries of a point in the list of neighbours, a multiple of four.
+    pub stride: u32,
+    /// Entries of a list of leaves, a multiple of four.
+    pub capacity: u32,
+    /// The first box of the highest level.
+    pub root: u32,
+    /// Boxes of points, which come first.
+    pub leaf_count: u32,
+    /// How many leaves of the batch are looked at again, with a larger capacity; 0: all are looked at.
+    pub listed: u32,
+}
+gpu_layout!(SearchParams, 40, {
+    first_slot: 0, point_count: 4, batch_first: 8, batch_count: 12, neighbors: 16, stride: 20,
+    capacity: 24, root: 28, leaf_count: 32, listed: 36,
+});
+
+/// Parameters of `smooth_sizes` for one batch of points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct SmoothParams {
+    /// Of the batch.
+    pub first_slot: u32,
+    /// Points of the batch.
+    pub point_count: u32,
+    /// Entries of a point in the list of neighbours.
+    pub stride: u32,
+    /// 0: reaches are written; 1: sizes.
+    pub round: u32,
+}
+gpu_layout!(SmoothParams, 16, { first_slot: 0, point_count: 4, stride: 8, round: 12 });
+
 /// A trust ball that ends at a rim.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -400,7 +581,7 @@ pub struct FitParams {
     pub first_slot: u32,
     /// Points in this batch.
     pub point_count: u32,
-    /// Entries a point in the list of neighbours.
+    /// Entries a point in the list of neighbours, a multiple of four; of a plan: k.
     pub neighbors: u32,
     /// `FIT_FULL` or `FIT_INCOMPLETE`: the first kind tried.
     pub polynomial: u32,
@@ -418,10 +599,13 @@ pub struct FitParams {
     pub close_gaps: u32,
     /// Of the distance to the centroid, over the reach of the neighbours; 0: no rims.
     pub rim_limit: f32,
+    /// Slot that the buffers by slot are bound from; points are bound as a whole.
+    pub bound_from: u32,
 }
-gpu_layout!(FitParams, 44, {
+gpu_layout!(FitParams, 48, {
     first_slot: 0, point_count: 4, neighbors: 8, polynomial: 12, feature_size: 16, trust: 20,
     object: 24, first_listed: 28, weight_scale: 32, close_gaps: 36, rim_limit: 40,
+    bound_from: 44,
 });
 
 /// The uniform grid's place and size.
@@ -453,12 +637,23 @@ impl GridInfo {
 pub struct GridParams {
     /// Points of the scene.
     pub point_count: u32,
-    /// Pairs of a cell and a point near it.
+    /// Pairs of a cell of the slab and a point near it.
     pub pair_count: u32,
     /// Radius listed over trust radius; 0: each point in its own cell alone.
     pub ball_scale: f32,
+    /// First layer of cells along z of the slab.
+    pub first_layer: u32,
+    /// Past the last.
+    pub end_layer: u32,
+    /// Pairs of the slabs before.
+    pub first_pair: u32,
+    /// 1 where balls may be large.
+    pub any_large: u32,
 }
-gpu_layout!(GridParams, 12, { point_count: 0, pair_count: 4, ball_scale: 8 });
+gpu_layout!(GridParams, 28, {
+    point_count: 0, pair_count: 4, ball_scale: 8, first_layer: 12, end_layer: 16, first_pair: 20,
+    any_large: 24,
+});
 
 /// Push constants of the scan.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -481,8 +676,10 @@ pub struct SortParams {
     pub shift: u32,
     /// Runs of `RUN_LENGTH` keys.
     pub runs: u32,
+    /// Bits of the digit, `DIGIT_BITS` at most.
+    pub bits: u32,
 }
-gpu_layout!(SortParams, 12, { count: 0, shift: 4, runs: 8 });
+gpu_layout!(SortParams, 16, { count: 0, shift: 4, runs: 8, bits: 12 });
 
 /// Push constants of `camera_rays`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -599,6 +796,73 @@ pub struct BackgroundInfo {
 }
 gpu_layout!(BackgroundInfo, 16, { color: 0, environment: 12 });
 
+/// Push constants of `camera_trace`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct CameraTraceParams {
+    /// As in [`CameraParams`], as are the next six.
+    pub eye: [f32; 3],
+    /// Half the view's height over half the rows.
+    pub scale: f32,
+    /// Unit vector.
+    pub right: [f32; 3],
+    /// Of the full image, in pixels.
+    pub half_width: f32,
+    /// Unit vector.
+    pub up: [f32; 3],
+    /// Of the full image, in pixels.
+    pub half_height: f32,
+    /// Unit vector of the viewing axis.
+    pub forward: [f32; 3],
+    /// Loop iterations a ray may spend.
+    pub work: u32,
+    /// The tile's first pixel in the full image.
+    pub tile_origin: [u32; 2],
+    /// Columns and rows of the tile.
+    pub tile_size: [u32; 2],
+    /// What rays that hit nothing see.
+    pub background: BackgroundInfo,
+    /// How pairs of a screen tile are ordered.
+    pub ranks: DepthRanks,
+    /// What leaves the background out: one of `TRANSPARENT_*`, or 0 for nothing.
+    pub transparent: u32,
+    /// Interactions after the primary hit.
+    pub max_bounces: u32,
+}
+gpu_layout!(CameraTraceParams, 120, {
+    eye: 0, scale: 12, right: 16, half_width: 28, up: 32, half_height: 44, forward: 48, work: 60,
+    tile_origin: 64, tile_size: 72, background: 80, ranks: 96, transparent: 112,
+    max_bounces: 116,
+});
+
+/// A hit on a diffuse surface, where light is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct LitHit {
+    /// Centred scene space.
+    pub position: [f32; 3],
+    /// The point hit.
+    pub slot: u32,
+    /// Unit normal facing the ray's origin.
+    pub normal: [f32; 3],
+    /// Unused.
+    pub pad: u32,
+}
+gpu_layout!(LitHit, 32, { position: 0, slot: 12, normal: 16, pad: 28 });
+
+/// Push constants of `count_marked` and `list_marked`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct MarkParams {
+    /// Words of 32 marks each.
+    pub words: u32,
+    /// 1: a word is followed by one whose marks count twice.
+    pub pairs: u32,
+    /// 1: marks are of the rays of a list.
+    pub listed: u32,
+}
+gpu_layout!(MarkParams, 12, { words: 0, pairs: 4, listed: 8 });
+
 /// Push constants of the kernels that scatter and shade the rays of a wave.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -613,8 +877,8 @@ pub struct WaveParams {
     pub tile_origin: [u32; 2],
     /// Columns and rows of the tile.
     pub tile_size: [u32; 2],
-    /// 0: rays from the camera.
-    pub wave: u32,
+    /// `WAVE_*`.
+    pub flags: u32,
     /// Interactions after the primary hit.
     pub max_bounces: u32,
     /// 1: glass reflects or refracts at random; 0: it refracts.
@@ -631,7 +895,7 @@ pub struct WaveParams {
     pub transparent: u32,
 }
 gpu_layout!(WaveParams, 80, {
-    forward: 0, ray_count: 12, background: 16, tile_origin: 32, tile_size: 40, wave: 48,
+    forward: 0, ray_count: 12, background: 16, tile_origin: 32, tile_size: 40, flags: 48,
     max_bounces: 52, fresnel: 56, seed: 60, light: 64, light_count: 68, sample_index: 72,
     transparent: 76,
 });
@@ -1040,11 +1304,14 @@ gpu_layout!(AccumulateParams, 16, { tile_size: 0, sample_index: 8, samples: 12 }
 
 /// Every struct that host and kernels share.
 pub const STRUCTS: &[StructLayout] = &[
-    Point::LAYOUT,
     ListedPoint::LAYOUT,
     Polynomial::LAYOUT,
     FitOutcome::LAYOUT,
     Rim::LAYOUT,
+    SearchNode::LAYOUT,
+    LevelParams::LAYOUT,
+    SearchParams::LAYOUT,
+    SmoothParams::LAYOUT,
     BallClip::LAYOUT,
     ClipParams::LAYOUT,
     FitParams::LAYOUT,
@@ -1057,6 +1324,9 @@ pub const STRUCTS: &[StructLayout] = &[
     DepthRanks::LAYOUT,
     DiscParams::LAYOUT,
     DiscTraceParams::LAYOUT,
+    CameraTraceParams::LAYOUT,
+    LitHit::LAYOUT,
+    MarkParams::LAYOUT,
     WaveParams::LAYOUT,
     BackgroundInfo::LAYOUT,
     ImageInfo::LAYOUT,

@@ -26,10 +26,18 @@ macro_rules! modules {
 modules! {
     /// Adds a sample to each pixel's sum.
     accumulate,
+    /// How far the nearest of each point can be, for many of them.
+    bound_reach,
+    /// `bound_reach`, reading points through a uniform texel buffer.
+    bound_reach_texels,
+    /// `bound_reach_texels` for up to 16.
+    bound_reach_texels_few,
     /// The camera's ray of each pixel.
     camera_rays,
     /// `camera_rays` for rays in a queue.
     camera_rays_queue,
+    /// The first wave from the eye to the film, where rays of a queue need none.
+    camera_trace,
     /// Where each cell's entries begin.
     cell_offsets,
     /// What becomes of each ray of a wave.
@@ -38,26 +46,52 @@ modules! {
     classify_queue,
     /// Trust balls that end at rims.
     clip_balls,
+    /// Bits set in each word of marks.
+    count_marked,
     /// Screen tiles that each disc covers.
     disc_count,
+    /// `disc_count` for rays in a queue.
+    disc_count_queue,
     /// Pairs of screen tile and point.
     disc_emit,
+    /// `disc_emit` for rays in a queue.
+    disc_emit_queue,
     /// Where each screen tile's points begin and end.
     disc_ranges,
     /// The nearest hit among the points of a screen tile.
     disc_trace,
     /// `disc_trace` for rays in a queue.
     disc_trace_queue,
-    /// The same, reading polynomials through a uniform texel buffer.
-    disc_trace_texels,
-    /// `disc_trace_texels` for rays in a queue.
-    disc_trace_texels_queue,
+    /// The nearest of each point, for many of them.
+    find_neighbors,
+    /// `find_neighbors`, reading points through a uniform texel buffer.
+    find_neighbors_texels,
+    /// `find_neighbors_texels` for up to 16.
+    find_neighbors_texels_few,
+    /// `find_neighbors_texels_few` where no two others are equally far.
+    find_neighbors_untied,
     /// The local polynomial of each point.
     fit_polynomials,
-    /// Cells around each trust ball.
+    /// The same, reading points through a uniform texel buffer.
+    fit_polynomials_texels,
+    /// `fit_polynomials_texels` for lists of up to 16.
+    fit_polynomials_texels_few,
+    /// Boxes of points that the balls of others touch.
+    gather_leaves,
+    /// The same, reading points and boxes through uniform texel buffers.
+    gather_leaves_texels,
+    /// Cells that each trust ball meets.
     grid_count,
+    /// The same, reading polynomials through a uniform texel buffer.
+    grid_count_texels,
     /// Pairs of cell and point.
     grid_emit,
+    /// Those of large balls.
+    grid_emit_large,
+    /// The same, reading polynomials through a uniform texel buffer.
+    grid_emit_large_texels,
+    /// `grid_emit`, reading polynomials through a uniform texel buffer.
+    grid_emit_texels,
     /// Where each cell's points begin and end.
     grid_ranges,
     /// One pass of the traversal.
@@ -66,16 +100,10 @@ modules! {
     grid_trace_leaving,
     /// `grid_trace_leaving` for rays in a queue.
     grid_trace_leaving_queue,
-    /// For those, reading polynomials through a uniform texel buffer.
-    grid_trace_leaving_texels,
-    /// `grid_trace_leaving_texels` for rays in a queue.
-    grid_trace_leaving_texels_queue,
     /// `grid_trace` for rays in a queue.
     grid_trace_queue,
-    /// From the camera, reading polynomials through a uniform texel buffer.
-    grid_trace_texels,
-    /// `grid_trace_texels` for rays in a queue.
-    grid_trace_texels_queue,
+    /// Cells beside marked ones.
+    grow_marks,
     /// Where rays first meet an isosurface.
     isosurface,
     /// `isosurface` for rays in a queue.
@@ -84,14 +112,16 @@ modules! {
     isosurface_shadows,
     /// `isosurface_shadows` for rays in a queue.
     isosurface_shadows_queue,
-    /// The rays that hit a diffuse surface, one after another.
-    list_lit,
-    /// `list_lit` for rays in a queue.
-    list_lit_queue,
-    /// The rays of a wave that have not ended, one after another.
-    list_live,
+    /// Boxes around points.
+    leaf_boxes,
+    /// The same, reading points through a uniform texel buffer.
+    leaf_boxes_texels,
+    /// The rays that are marked, one after another.
+    list_marked,
     /// The points of each cell with their positions.
     list_points,
+    /// The same, reading polynomials through a uniform texel buffer.
+    list_points_texels,
     /// Rays through volumes.
     march,
     /// Rays through volumes that lights shine into.
@@ -104,10 +134,10 @@ modules! {
     march_shadows,
     /// `march_shadows` for rays in a queue.
     march_shadows_queue,
-    /// Which rays of a wave have not ended.
-    mark_live,
-    /// `mark_live` for rays in a queue.
-    mark_live_queue,
+    /// Cells that have points.
+    mark_occupied,
+    /// Boxes around boxes.
+    node_boxes,
     /// What of a light's reaches the points of a volume.
     point_lights,
     /// `point_lights` for rays in a queue.
@@ -120,10 +150,6 @@ modules! {
     refine,
     /// `refine` for rays in a queue.
     refine_queue,
-    /// The same, reading points through a uniform texel buffer.
-    refine_texels,
-    /// `refine_texels` for rays in a queue.
-    refine_texels_queue,
     /// Sends rays whose hit was refined away on to the next.
     resume,
     /// `resume` for rays in a queue.
@@ -144,6 +170,12 @@ modules! {
     shadow_rays,
     /// `shadow_rays` for rays in a queue.
     shadow_rays_queue,
+    /// How far empty cells are from others.
+    skip_cells,
+    /// Feature sizes as means over neighbours.
+    smooth_sizes,
+    /// The same, reading points through a uniform texel buffer.
+    smooth_sizes_texels,
     /// Stable sort by one digit, first half.
     sort_count,
     /// Stable sort by one digit, second half.
@@ -156,42 +188,44 @@ modules! {
 
 /// Modules made of another kernel's source with macros defined: name, kernel, macros.
 pub const VARIANTS: &[(&str, &str, &[&str])] = &[
-    ("camera_rays_queue", "camera_rays", &["STATE_QUEUE"]),
-    ("classify_queue", "classify", &["STATE_QUEUE"]),
-    ("disc_trace_queue", "disc_trace", &["STATE_QUEUE"]),
-    ("disc_trace_texels", "disc_trace", &["RECORDS_AS_TEXELS"]),
-    ("disc_trace_texels_queue", "disc_trace", &["RECORDS_AS_TEXELS", "STATE_QUEUE"]),
+    ("bound_reach_texels", "bound_reach", &["POINTS_AS_TEXELS"]),
+    ("bound_reach_texels_few", "bound_reach", &["POINTS_AS_TEXELS", "FEW"]),
+    ("camera_rays_queue", "camera_rays", &["QUEUE"]),
+    ("classify_queue", "classify", &["QUEUE"]),
+    ("disc_count_queue", "disc_count", &["QUEUE"]),
+    ("disc_emit_queue", "disc_emit", &["QUEUE"]),
+    ("disc_trace_queue", "disc_trace", &["QUEUE"]),
+    ("find_neighbors_texels", "find_neighbors", &["POINTS_AS_TEXELS"]),
+    ("find_neighbors_texels_few", "find_neighbors", &["POINTS_AS_TEXELS", "FEW"]),
+    ("find_neighbors_untied", "find_neighbors", &["POINTS_AS_TEXELS", "FEW", "UNTIED"]),
+    ("fit_polynomials_texels", "fit_polynomials", &["POINTS_AS_TEXELS"]),
+    ("fit_polynomials_texels_few", "fit_polynomials", &["POINTS_AS_TEXELS", "FEW"]),
+    ("gather_leaves_texels", "gather_leaves", &["POINTS_AS_TEXELS"]),
+    ("grid_count_texels", "grid_count", &["POINTS_AS_TEXELS"]),
+    ("grid_emit_large_texels", "grid_emit_large", &["POINTS_AS_TEXELS"]),
+    ("grid_emit_texels", "grid_emit", &["POINTS_AS_TEXELS"]),
     ("grid_trace_leaving", "grid_trace", &["LEAVES"]),
-    ("grid_trace_leaving_queue", "grid_trace", &["LEAVES", "STATE_QUEUE"]),
-    ("grid_trace_leaving_texels", "grid_trace", &["LEAVES", "RECORDS_AS_TEXELS"]),
-    (
-        "grid_trace_leaving_texels_queue",
-        "grid_trace",
-        &["LEAVES", "RECORDS_AS_TEXELS", "STATE_QUEUE"],
-    ),
-    ("grid_trace_queue", "grid_trace", &["STATE_QUEUE"]),
-    ("grid_trace_texels", "grid_trace", &["RECORDS_AS_TEXELS"]),
-    ("grid_trace_texels_queue", "grid_trace", &["RECORDS_AS_TEXELS", "STATE_QUEUE"]),
-    ("isosurface_queue", "isosurface", &["STATE_QUEUE"]),
+    ("grid_trace_leaving_queue", "grid_trace", &["LEAVES", "QUEUE"]),
+    ("grid_trace_queue", "grid_trace", &["QUEUE"]),
+    ("isosurface_queue", "isosurface", &["QUEUE"]),
     ("isosurface_shadows", "isosurface", &["SHADOWS"]),
-    ("isosurface_shadows_queue", "isosurface", &["SHADOWS", "STATE_QUEUE"]),
-    ("list_lit_queue", "list_lit", &["STATE_QUEUE"]),
+    ("isosurface_shadows_queue", "isosurface", &["SHADOWS", "QUEUE"]),
+    ("leaf_boxes_texels", "leaf_boxes", &["POINTS_AS_TEXELS"]),
+    ("list_points_texels", "list_points", &["POINTS_AS_TEXELS"]),
     ("march_lit", "march", &["LIT"]),
-    ("march_lit_queue", "march", &["LIT", "STATE_QUEUE"]),
-    ("march_queue", "march", &["STATE_QUEUE"]),
+    ("march_lit_queue", "march", &["LIT", "QUEUE"]),
+    ("march_queue", "march", &["QUEUE"]),
     ("march_shadows", "march", &["SHADOWS"]),
-    ("march_shadows_queue", "march", &["SHADOWS", "STATE_QUEUE"]),
-    ("mark_live_queue", "mark_live", &["STATE_QUEUE"]),
-    ("point_lights_queue", "point_lights", &["STATE_QUEUE"]),
-    ("point_rays_queue", "point_rays", &["STATE_QUEUE"]),
-    ("refine_queue", "refine", &["STATE_QUEUE"]),
-    ("refine_texels", "refine", &["RECORDS_AS_TEXELS"]),
-    ("refine_texels_queue", "refine", &["RECORDS_AS_TEXELS", "STATE_QUEUE"]),
-    ("resume_queue", "resume", &["STATE_QUEUE"]),
-    ("scatter_queue", "scatter", &["STATE_QUEUE"]),
-    ("shade_queue", "shade", &["STATE_QUEUE"]),
-    ("shadow_rays_queue", "shadow_rays", &["STATE_QUEUE"]),
-    ("surface_hit_queue", "surface_hit", &["STATE_QUEUE"]),
+    ("march_shadows_queue", "march", &["SHADOWS", "QUEUE"]),
+    ("point_lights_queue", "point_lights", &["QUEUE"]),
+    ("point_rays_queue", "point_rays", &["QUEUE"]),
+    ("refine_queue", "refine", &["QUEUE"]),
+    ("resume_queue", "resume", &["QUEUE"]),
+    ("scatter_queue", "scatter", &["QUEUE"]),
+    ("shade_queue", "shade", &["QUEUE"]),
+    ("shadow_rays_queue", "shadow_rays", &["QUEUE"]),
+    ("smooth_sizes_texels", "smooth_sizes", &["POINTS_AS_TEXELS"]),
+    ("surface_hit_queue", "surface_hit", &["QUEUE"]),
 ];
 
 /// The kernel whose source a module is made of, and the macros it is compiled with.

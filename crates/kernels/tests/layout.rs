@@ -110,15 +110,15 @@ fn group_sizes_and_bindings_match_the_host() {
                 _ => None,
             })
             .collect();
-        let over_pixels =
-            ["accumulate", "camera_rays", "disc_trace"].contains(&spirv::source_of(kernel).0);
+        let over_pixels = ["accumulate", "camera_rays", "camera_trace", "disc_trace"]
+            .contains(&spirv::source_of(kernel).0);
         let group = if over_pixels { layout::TILE_GROUP } else { layout::LINE_GROUP };
         assert_eq!(size, [group, 1, 1], "{kernel}: workgroup");
         for line in &module.annotations {
             if let [_, Operand::Decoration(Decoration::Binding), Operand::LiteralBit32(binding)] =
                 line.operands.as_slice()
             {
-                assert!(*binding <= layout::MARCH_VISIBLE, "{kernel}: binding {binding}");
+                assert!(*binding <= layout::LIST_IN, "{kernel}: binding {binding}");
             }
         }
     }

@@ -1,13 +1,15 @@
 //! Primary rays by discs (\[T\] §4): when, and how the points of a screen tile are ordered.
 
 use crate::{Diagnostic, Plan, Primary, Window};
-use kernels::layout::{DISC_TILE, DepthRanks, DiscParams, GridInfo, PERSPECTIVE};
+use kernels::layout::{
+    CameraParams, CameraTraceParams, DISC_TILE, DepthRanks, DiscParams, GridInfo, PERSPECTIVE,
+};
 
 /// Pairs of a screen tile and a point that one tile of the picture may have. One binding holds 32
 /// million on any device; what has more is traced through the grid, which gives the same bytes.
 pub const MAX_DISC_PAIRS: u32 = 16_000_000;
-/// Bits of a pair's key: three rounds of the sort. What the screen tile leaves goes to the rank.
-const KEY_BITS: u32 = 24;
+/// Bits of a pair's key: three short rounds of the sort. What the screen tile leaves goes to the rank.
+const KEY_BITS: u32 = 21;
 /// Depths are told apart from the farthest down to this share of it.
 const NEAREST_SHARE: f64 = 1.0 / 64.0;
 
@@ -52,6 +54,37 @@ impl Plan {
             pair_count: 0,
         }
     }
+
+    /// Whether the first wave of a tile that is traced by discs may be one pass: where its rays meet nothing but
+    /// surfaces, which are taken as they are.
+    #[must_use]
+    pub fn meets_surfaces_alone(&self) -> bool {
+        self.volumes.infos.is_empty() && self.camera_media.is_empty() && !self.refines()
+    }
+
+    /// Parameters of `camera_trace` for one tile, whose rays may spend so much work.
+    #[must_use]
+    pub fn camera_trace_of(&self, tile: &Window, grid: &GridInfo, work: u32) -> CameraTraceParams {
+        let wave = self.wave_of(tile, 0);
+        let CameraParams { eye, scale, right, half_width, up, half_height, forward, .. } =
+            self.camera;
+        CameraTraceParams {
+            eye,
+            scale,
+            right,
+            half_width,
+            up,
+            half_height,
+            forward,
+            work,
+            tile_origin: tile.origin,
+            tile_size: tile.size,
+            background: wave.background,
+            ranks: self.discs_of(tile, grid).ranks,
+            transparent: wave.transparent,
+            max_bounces: wave.max_bounces,
+        }
+    }
 }
 
 /// Screen tiles of a tile of the picture.
@@ -91,7 +124,7 @@ mod tests {
         for (eye, nearest) in [([0.0, 0.0, 5.0], 4.0), ([0.5, 0.0, 0.0], 4.25f32.sqrt() / 64.0)] {
             let ranks = depth_ranks(eye, &grid([-1.0; 3], 1.0), 4800);
             assert!((ranks.nearest / nearest - 1.0).abs() < 1e-6, "{ranks:?}");
-            assert_eq!(ranks.bits, 11);
+            assert_eq!(ranks.bits, 8);
             let highest = (ranks.farthest.to_bits() - ranks.nearest.to_bits()) >> ranks.shift;
             assert!(highest < 1 << ranks.bits && highest >= 1 << (ranks.bits - 1), "{ranks:?}");
         }

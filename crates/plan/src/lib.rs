@@ -29,8 +29,11 @@ pub use volumes::Volumes;
 use images::{ImageList, Use};
 use kernels::layout::{
     self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, LIGHT_DIRECTIONAL,
-    LIGHT_POINT, MATERIAL_DIFFUSE, MEDIA_WORDS, NONE, ObjectInfo, TRANSPARENT_CAMERA,
-    TRANSPARENT_GLASS, WaveParams,
+    LIGHT_POINT, MATERIAL_DIFFUSE, MATERIAL_GLASS, MEDIA_WORDS, NONE, ObjectInfo, SCENE_ABSORBS,
+    SCENE_ALPHA, SCENE_BLENDS, SCENE_CHANCE, SCENE_DIAGNOSTICS, SCENE_DIFFUSE, SCENE_DISPERSES,
+    SCENE_ENVIRONMENT, SCENE_LIGHTS, SCENE_MANY_LIGHTS, SCENE_NESTED, SCENE_REFINES, SCENE_SAMPLES,
+    SCENE_SCATTERS, SCENE_TEXTURES, SCENE_VALUES, SCENE_VOLUMES, TRANSPARENT_CAMERA,
+    TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
 };
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
 use points::{Cloud, CloudError, ObjectPoints, PointSet, bounds_of};
@@ -203,7 +206,7 @@ impl Plan {
                 },
                 tile_origin: [0, 0],
                 tile_size: [0, 0],
-                wave: 0,
+                flags: WAVE_FROM_CAMERA,
                 max_bounces: scene.render.max_bounces,
                 fresnel: u32::from(scene.render.fresnel == Fresnel::Sample),
                 seed: scene.render.seed,
@@ -311,6 +314,36 @@ impl Plan {
             sample_index: self.sample_index(sample),
             ..self.wave
         }
+    }
+
+    /// `SCENE_*`: what kernels of this plan have to do.
+    #[must_use]
+    pub fn scene_bits(&self) -> u32 {
+        fn is_glass(object: &ObjectInfo) -> bool {
+            object.material == MATERIAL_GLASS
+        }
+        let any = |has: fn(&ObjectInfo) -> bool| self.objects.iter().any(has);
+        [
+            (SCENE_ENVIRONMENT, self.wave.background.environment != NONE),
+            (SCENE_BLENDS, any(|object| object.blends != 0)),
+            (SCENE_LIGHTS, !self.lights.is_empty()),
+            (SCENE_ALPHA, self.channel_alpha),
+            (SCENE_DIAGNOSTICS, !self.diagnostics.is_empty()),
+            (SCENE_VALUES, any(|object| object.first_color != NONE)),
+            (SCENE_TEXTURES, any(|object| object.texture != NONE)),
+            (SCENE_SAMPLES, self.samples > 1),
+            (SCENE_REFINES, self.refines()),
+            (SCENE_DIFFUSE, any(|object| object.material == MATERIAL_DIFFUSE)),
+            (SCENE_SCATTERS, self.scatters()),
+            (SCENE_NESTED, self.objects.iter().filter(|object| is_glass(object)).count() > 1),
+            (SCENE_DISPERSES, self.rays_per_pixel() > 1),
+            (SCENE_ABSORBS, any(|object| is_glass(object) && object.absorption != [0.0; 3])),
+            (SCENE_CHANCE, self.wave.fresnel != 0),
+            (SCENE_VOLUMES, !self.volumes.infos.is_empty()),
+            (SCENE_MANY_LIGHTS, self.lights.len() > 1),
+        ]
+        .into_iter()
+        .fold(0, |bits, (bit, is_set)| if is_set { bits | bit } else { bits })
     }
 
     /// As kernels take it: the one sample of a pixel is none of a sequence.

@@ -47,6 +47,7 @@ pub(crate) fn fit_params(object: &Object, index: u32, cloud: &Cloud) -> FitParam
         weight_scale: (1.0 / object.surface.weight_width) as f32,
         close_gaps: u32::from(object.surface.close_gaps),
         rim_limit: if object.surface.boundary_clip { rim_limit(neighbors) } else { 0.0 },
+        bound_from: 0,
     }
 }
 

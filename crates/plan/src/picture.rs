@@ -3,7 +3,7 @@
 use crate::diagnostic::Fitted;
 use crate::{Plan, Window};
 use film::Film;
-use kernels::layout::{FilmPixel, FitOutcome};
+use kernels::layout::{FilmPixel, FitOutcome, NONE};
 
 /// A picture that is being filled, tile by tile, and what its rays did.
 #[derive(Debug)]
@@ -93,6 +93,7 @@ impl Picture {
             let first = row as usize * film.window.width as usize + x0 as usize;
             for (at, pixel) in (first..).zip(pixels) {
                 self.tests += u64::from(pixel.counts[0]);
+                let pixel = &seen(pixel);
                 let [x, y, z, depth] = pixel.position_depth;
                 let [nx, ny, nz, object] = pixel.normal_object;
                 film.color[at] = pixel.color;
@@ -119,5 +120,19 @@ impl Picture {
     #[must_use]
     pub fn finish(self) -> Film {
         self.film
+    }
+}
+
+/// A pixel with what is the same for all that show no surface, which kernels do not write.
+fn seen(pixel: &FilmPixel) -> FilmPixel {
+    if pixel.normal_object[3] >= 0.0 {
+        return *pixel;
+    }
+    let [tests, cells, ..] = pixel.counts;
+    FilmPixel {
+        position_depth: [0.0, 0.0, 0.0, f32::INFINITY],
+        normal_object: [0.0, 0.0, 0.0, -1.0],
+        counts: [tests, cells, NONE, pixel.counts[3]],
+        ..*pixel
     }
 }

@@ -2,7 +2,9 @@
 //!
 //! Coordinates are moved to the centre of the scene's bounding box in f64 before anything is f32,
 //! so survey data with offsets of 10⁶ keeps its digits. The points of an object are then sorted
-//! along a Morton curve: neighbours in space are neighbours in memory. A point's place there is its
+//! along a Hilbert curve: neighbours in space are neighbours in memory, and places that follow each other
+//! lie close together, which the neighbour search of a device lives by. Points that share a place of the curve
+//! are sorted along a finer one through their own box, so that a far outlier spoils nothing. A point's place there is its
 //! slot; results never depend on it, since ties go by [`Cloud::order`].
 
 use kernels::layout::Point;
@@ -10,6 +12,11 @@ use rayon::prelude::*;
 
 /// Farther than this from the centre, squares of squares of f32 coordinates would overflow.
 pub const FARTHEST: f64 = 1e12;
+
+/// Bits an axis of a place on the curve.
+const CURVE_BITS: u32 = 21;
+/// So many points that share a place on a curve may lie in any order.
+const UNSORTED: usize = 8;
 
 /// The points of one object, in world coordinates.
 #[derive(Debug, Clone, Copy)]
@@ -133,10 +140,9 @@ impl Cloud {
                 index,
             })
             .collect();
-        let keys = morton_keys(&local);
-        let mut slots: Vec<u32> = (0..local.len() as u32).collect();
-        slots.par_sort_unstable_by_key(|&i| (keys[i as usize], i));
-        for (slot, &i) in slots.iter().enumerate() {
+        let mut places: Vec<(u64, u32)> = (0..local.len() as u32).map(|i| (0, i)).collect();
+        sort_along_curve(&local, &mut places);
+        for (slot, &(_, i)) in places.iter().enumerate() {
             self.points.push(local[i as usize]);
             self.order[first + i as usize] = (first + slot) as u32;
         }
@@ -174,25 +180,60 @@ pub fn bounds_of<'a>(points: impl IntoIterator<Item = &'a [f64; 3]>) -> Option<[
     }))
 }
 
-/// 21 bits an axis, interleaved, over the cube around the points.
-fn morton_keys(points: &[Point]) -> Vec<u64> {
-    let along = |axis: usize| points.iter().map(move |p| p.position[axis]);
-    let low = [0, 1, 2].map(|axis| along(axis).fold(f32::INFINITY, f32::min));
-    let high = [0, 1, 2].map(|axis| along(axis).fold(f32::NEG_INFINITY, f32::max));
-    let extent = (0..3).map(|axis| high[axis] - low[axis]).fold(f32::MIN_POSITIVE, f32::max);
-    let steps = f64::from((1u32 << 21) - 1);
-    points
+/// Sorts places in `points` along a Hilbert curve through the cube around them, and those that it does not
+/// tell apart along another through theirs. Points that coincide come in the order of the file, one after
+/// another wherever there are more than [`UNSORTED`].
+fn sort_along_curve(points: &[Point], places: &mut [(u64, u32)]) {
+    let position = |place: &(u64, u32)| points[place.1 as usize].position;
+    let empty = || ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    let join = |a: ([f32; 3], [f32; 3]), b: ([f32; 3], [f32; 3])| {
+        ([0, 1, 2].map(|i| a.0[i].min(b.0[i])), [0, 1, 2].map(|i| a.1[i].max(b.1[i])))
+    };
+    let (low, high) = places
         .par_iter()
-        .map(|p| {
-            [0, 1, 2]
-                .map(|axis| {
-                    let at = f64::from(p.position[axis] - low[axis]) / f64::from(extent);
-                    spread_bits((at * steps) as u64) << axis
-                })
-                .iter()
-                .sum()
-        })
-        .collect()
+        .with_min_len(1 << 12)
+        .fold(empty, |bounds, place| join(bounds, (position(place), position(place))))
+        .reduce(empty, join);
+    let extent = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f32::max);
+    // What is left of coordinates this small is no order, and need not be one.
+    let is_spread = extent > f32::MIN_POSITIVE;
+    let scale =
+        f64::from((1u32 << CURVE_BITS) - 1) / f64::from(if is_spread { extent } else { 1.0 });
+    places.par_iter_mut().with_min_len(1 << 12).for_each(|place| {
+        let p = points[place.1 as usize].position;
+        let at = [0, 1, 2].map(|axis| (f64::from(p[axis] - low[axis]) * scale) as u32);
+        place.0 = if is_spread { place_on_curve(at) } else { 0 };
+    });
+    places.par_sort_unstable();
+    if is_spread {
+        let runs = places.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > UNSORTED);
+        runs.for_each(|run| sort_along_curve(points, run));
+    }
+}
+
+/// Where a cell of a cube with 2^[`CURVE_BITS`] cells a side lies on the Hilbert curve through it. After
+/// Skilling, Programming the Hilbert curve, 2004.
+fn place_on_curve(cell: [u32; 3]) -> u64 {
+    let mut x = cell;
+    for bit in (1..CURVE_BITS).rev() {
+        let below = (1 << bit) - 1;
+        for axis in 0..3 {
+            // All ones where the bit is set: then the first axis turns, else both change places.
+            let set = 0u32.wrapping_sub((x[axis] >> bit) & 1);
+            let exchanged = (x[0] ^ x[axis]) & below & !set;
+            x[0] ^= exchanged ^ (below & set);
+            x[axis] ^= exchanged;
+        }
+    }
+    x[1] ^= x[0];
+    x[2] ^= x[1];
+    // Each bit turns those below it: what is left is the parity of the bits from each on.
+    let mut turns = x[2] >> 1;
+    for shift in [1, 2, 4, 8, 16] {
+        turns ^= turns >> shift;
+    }
+    let [x, y, z] = x.map(|bits| spread_bits(u64::from(bits ^ turns)));
+    x << 2 | y << 1 | z
 }
 
 /// Puts two zero bits between each of the low 21 bits.
@@ -236,6 +277,35 @@ mod tests {
         for (point, id) in cloud.points.iter().zip(cloud.by_slot(0, &ids)) {
             assert_eq!(point.index, id);
         }
+    }
+
+    #[test]
+    fn the_curve_goes_through_every_cell_by_steps_of_one() {
+        // Of the lowest three bits, in the corner where the curve begins.
+        let mut cells: Vec<(u64, [u32; 3])> = (0..512)
+            .map(|i| [i % 8, i / 8 % 8, i / 64])
+            .map(|cell| (place_on_curve(cell), cell))
+            .collect();
+        cells.sort_unstable();
+        assert!(cells.iter().zip(0..).all(|(cell, place)| cell.0 == place));
+        let step = |a: [u32; 3], b: [u32; 3]| -> u32 { (0..3).map(|i| a[i].abs_diff(b[i])).sum() };
+        assert!(cells.windows(2).all(|pair| step(pair[0].1, pair[1].1) == 1));
+    }
+
+    /// 2^21 cells an axis, and all points but one in the same.
+    #[test]
+    fn an_outlier_leaves_the_others_in_order() {
+        let mut line: Vec<[f64; 3]> =
+            (0..1000).map(|i| [f64::from(i * 619 % 1000), 0.0, 0.0]).collect();
+        line.push([1e10, 0.0, 0.0]);
+        // The spacing of f32 at 5e9 is 512: the line becomes points that coincide, three times.
+        let cloud = cloud(&line).expect("a cloud");
+        let steps = cloud.points.windows(2);
+        let ordered = |pair: &[Point]| {
+            let way = pair[1].position[0] - pair[0].position[0];
+            way > 0.0 || (way == 0.0 && pair[0].index < pair[1].index)
+        };
+        assert_eq!(steps.filter(|pair| !ordered(pair)).count(), 0);
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! is a little finer, and with even points is the same rule: it follows their number.
 
 use kernels::layout::{FitOutcome, GridInfo, Point};
+use rayon::prelude::*;
 
 /// Radius that the grid lists a point with, over its trust radius: rounding then loses no cell that a
 /// hit lies in.
@@ -18,8 +19,9 @@ const CELLS_PER_POINT: f64 = 8.0;
 const PAIRS_PER_POINT: f64 = 48.0;
 /// Few points may still have this many cells and pairs.
 const ALWAYS_ALLOWED: f64 = 65_536.0;
-/// Neither cells nor pairs may outgrow one binding of 128 MiB, whatever the number of points.
-const NEVER_ALLOWED: f64 = 16_000_000.0;
+/// Neither cells (8 bytes) nor pairs (4 bytes) may outgrow one binding of 128 MiB, whatever the number of points.
+const CELLS_ALLOWED: f64 = 16_000_000.0;
+const PAIRS_ALLOWED: f64 = 32_000_000.0;
 
 const EMPTY: GridInfo =
     GridInfo { origin: [-0.5; 3], edge: 1.0, resolution: [1; 3], inverse_edge: 1.0 };
@@ -31,8 +33,9 @@ const EMPTY: GridInfo =
 #[must_use]
 pub fn plan_grid(points: &[Point], outcomes: &[FitOutcome], resolution: u32) -> GridInfo {
     let balls: Vec<([f64; 3], f64)> = points
-        .iter()
+        .par_iter()
         .zip(outcomes)
+        .with_min_len(1 << 14)
         .filter(|(_, outcome)| outcome.trust > 0.0)
         .map(|(point, outcome)| (point.position.map(f64::from), f64::from(outcome.trust)))
         .collect();
@@ -58,9 +61,9 @@ pub fn plan_grid(points: &[Point], outcomes: &[FitOutcome], resolution: u32) -> 
     // A coordinate's rounding must stay small beside a cell.
     edge = edge.max(longest * 1e-5);
     let allowed =
-        |per_point: f64| (per_point * balls.len() as f64).clamp(ALWAYS_ALLOWED, NEVER_ALLOWED);
-    while cell_count(extent, edge) > allowed(CELLS_PER_POINT)
-        || pair_count(&balls, low, edge) > allowed(PAIRS_PER_POINT)
+        |per_point: f64, most: f64| (per_point * balls.len() as f64).clamp(ALWAYS_ALLOWED, most);
+    while cell_count(extent, edge) > allowed(CELLS_PER_POINT, CELLS_ALLOWED)
+        || pair_count(&balls, low, edge) > allowed(PAIRS_PER_POINT, PAIRS_ALLOWED)
     {
         edge *= 1.1;
         if edge > 2.0 * longest {
@@ -93,7 +96,8 @@ fn pair_count(balls: &[([f64; 3], f64)], low: [f64; 3], edge: f64) -> f64 {
             })
             .product()
     };
-    balls.iter().map(cells).sum()
+    // Whole numbers, so that their order does not matter.
+    balls.par_iter().with_min_len(1 << 14).map(cells).sum()
 }
 
 #[cfg(test)]

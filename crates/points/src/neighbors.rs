@@ -140,6 +140,30 @@ impl<'a> NeighborSearch<'a> {
     }
 }
 
+/// The same lists for a few points of an object, by a look at all the others: without a tree, whose making
+/// takes as long as some hundred such looks.
+#[must_use]
+pub fn nearest_of_few(
+    points: &[Point],
+    first_slot: u32,
+    few: std::ops::Range<usize>,
+    k: usize,
+) -> Vec<u32> {
+    let mut lists = vec![NONE; few.len() * k];
+    lists.par_chunks_mut(k).zip(few).for_each(|(list, at)| {
+        let center = points[at].position;
+        let mut found: Vec<Found> = Vec::with_capacity(k + 1);
+        for (place, point) in (0..).zip(points).filter(|(place, _)| *place as usize != at) {
+            let candidate = (squared_distance(center, point.position), point.index, place);
+            insert(&mut found, k, candidate);
+        }
+        for (entry, &(_, _, place)) in list.iter_mut().zip(&found) {
+            *entry = first_slot + place;
+        }
+    });
+    lists
+}
+
 /// d² as every neighbour search of the project computes it.
 fn squared_distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     let [x, y, z] = [0, 1, 2].map(|axis| b[axis] - a[axis]);
@@ -260,6 +284,7 @@ mod tests {
 
     fn check(points: &[Point], k: usize) {
         let lists = NeighborSearch::new(points, 0).nearest(0..points.len(), k);
+        assert_eq!(lists, nearest_of_few(points, 0, 0..points.len(), k), "with and without a tree");
         for (at, list) in lists.chunks(k).enumerate() {
             assert_eq!(list, brute_force(points, at, k), "neighbours of point {at}, k = {k}");
         }

@@ -42,17 +42,16 @@ struct End {
 }
 
 impl Rims {
-    /// Adds what is open among points with consecutive slots, in ascending order over all calls. `lists`
-    /// has their neighbours, equally many for each, `NONE` behind the last.
-    pub fn add(&mut self, first_slot: u32, rims: &[Rim], lists: &[u32]) {
-        let k = lists.len() / rims.len().max(1);
-        for (i, (slot, rim)) in (first_slot..).zip(rims).enumerate() {
-            if rim.openness > 0.0 {
-                let list = lists[i * k..(i + 1) * k].iter().copied();
-                let neighbors = list.take_while(|&slot| slot != NONE).collect();
-                self.open.push(OpenPoint { slot, rim: *rim, neighbors });
-            }
-        }
+    /// Whether the cell of a point is open, so that [`add`](Self::add) is to know of it.
+    #[must_use]
+    pub fn is_open(rim: &Rim) -> bool {
+        rim.openness > 0.0
+    }
+
+    /// Adds an open point; they come by ascending slot. `list` has its neighbours, `NONE` behind the last.
+    pub fn add(&mut self, slot: u32, rim: &Rim, list: &[u32]) {
+        let neighbors = list.iter().copied().take_while(|&slot| slot != NONE).collect();
+        self.open.push(OpenPoint { slot, rim: *rim, neighbors });
     }
 
     /// The balls that end at a rim, by slot, ascending. Each lies inside the trust ball of its point: it
@@ -122,9 +121,11 @@ mod tests {
         let at = |x: f32, y: f32, index| Point { position: [x, y, 0.0], index };
         let points = vec![at(0.0, 0.0, 0), at(1.0, 0.0, 1), at(2.0, 0.0, 2), at(1.0, -1.0, 3)];
         let open = Rim { outward: [0.0, 1.0, 0.0], reach: 0.5, openness };
-        let lists = [[1, 2, 3], [0, 2, 3], [1, 0, 3], [1, 0, NONE]];
+        let lists = [[1, 2, 3], [0, 2, 3], [1, 0, 3]];
         let mut rims = Rims::default();
-        rims.add(0, &[open, open, open, Rim::default()], lists.as_flattened());
+        for (slot, list) in (0..3).zip(&lists) {
+            rims.add(slot, &open, list);
+        }
         (rims, points)
     }
 

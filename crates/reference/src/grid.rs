@@ -98,13 +98,15 @@ impl<R: Real> Grid<R> {
         away.dot(away) <= ball.radius * ball.radius
     }
 
-    /// Distances along the ray to the faces of the cell that it leaves through, axis by axis.
+    /// Distances along the ray to the faces that it leaves through of the box of cells at most `around` from the
+    /// cell, axis by axis.
     #[must_use]
-    pub fn crossings(&self, cell: [u32; 3], o: V3<R>, d: V3<R>) -> V3<R> {
+    pub fn crossings(&self, cell: [u32; 3], around: u32, o: V3<R>, d: V3<R>) -> V3<R> {
         V3([0, 1, 2].map(|axis| {
             let d = d.0[axis];
-            let forth = u32::from(d > R::of(0.0));
-            let face = self.origin.0[axis] + R::of_u32(cell[axis] + forth) * self.edge;
+            let (cell, around) = (cell[axis] as i32, around as i32);
+            let face = if d > R::of(0.0) { cell + around + 1 } else { cell - around };
+            let face = self.origin.0[axis] + R::of(f64::from(face)) * self.edge;
             if d.abs() > R::of(PARALLEL) { (face - o.0[axis]) / d } else { R::of(NO_HIT) }
         }))
     }
@@ -121,25 +123,51 @@ impl<R: Real> Grid<R> {
     /// Where a ray's way through the cell begins and ends.
     #[must_use]
     pub fn way_through(&self, cell: [u32; 3], o: V3<R>, d: V3<R>) -> [R; 2] {
-        let enters = -self.crossings(cell, o, -d);
+        let enters = -self.crossings(cell, 0, o, -d);
         let enter = enters.x().max(enters.y().max(enters.z()));
-        [enter, nearest_crossing(self.crossings(cell, o, d))]
+        [enter, nearest_crossing(self.crossings(cell, 0, o, d))]
     }
 
-    /// The next cell behind the face at the nearest crossing (ties: the lower axis), or none outside.
+    /// The next cell behind the face at the nearest of the crossings t of the box of cells `around` the cell
+    /// (ties: the lower axis), or none outside. Along the other axes it is where the ray is then, in the box, and
+    /// never behind where it was.
     #[must_use]
-    pub fn step(&self, mut cell: [u32; 3], t: V3<R>, d: V3<R>) -> Option<[u32; 3]> {
-        let axis = if t.x() <= t.y() && t.x() <= t.z() {
+    pub fn step(
+        &self,
+        cell: [u32; 3],
+        around: u32,
+        t: V3<R>,
+        o: V3<R>,
+        d: V3<R>,
+    ) -> Option<[u32; 3]> {
+        let crossed = if t.x() <= t.y() && t.x() <= t.z() {
             0
         } else if t.y() <= t.z() {
             1
         } else {
             2
         };
-        let back = if d.0[axis] > R::of(0.0) { 1 } else { u32::MAX };
-        cell[axis] = cell[axis].wrapping_add(back);
-        (cell[axis] < self.resolution[axis]).then_some(cell)
+        let reached = self.cell_of(o + d.times(nearest_crossing(t)));
+        let next = [0, 1, 2].map(|axis| {
+            let (from, around) = (cell[axis] as i32, around as i32);
+            let ahead = d.0[axis] > R::of(0.0);
+            let low = if ahead { from } else { from - around };
+            let high = if ahead { from + around } else { from };
+            match (axis == crossed, ahead) {
+                (true, true) => high + 1,
+                (true, false) => low - 1,
+                (false, _) => (reached[axis] as i32).clamp(low, high),
+            }
+        });
+        let inside = (0..3).all(|axis| (next[axis] as u32) < self.resolution[axis]);
+        inside.then(|| next.map(|at| at as u32))
     }
+}
+
+/// How many cells around one are empty with it, where `range` is its range of points: the range of an empty one
+/// begins at the distance to the next that is not.
+pub fn empty_around(range: [u32; 2]) -> u32 {
+    if range[0] == range[1] { range[0].max(1) - 1 } else { 0 }
 }
 
 /// Where a ray is within a box: the first over the second, nowhere.
@@ -178,7 +206,7 @@ mod tests {
         let mut next = (id != NONE).then(|| grid.cell_of_id(id));
         while let Some(cell) = next {
             visited.push(cell);
-            next = grid.step(cell, grid.crossings(cell, o, d), d);
+            next = grid.step(cell, 0, grid.crossings(cell, 0, o, d), o, d);
         }
         visited
     }

@@ -1,4 +1,4 @@
-//! Twin of the grid build: `grid_count`, `grid_emit`, the scan, the sort and `grid_ranges`.
+//! Twin of the grid build: `grid_count`, `grid_emit`, `grid_emit_large`, the scan, the sort and `grid_ranges`.
 //!
 //! A prefix sum and a stable sort have but one result, so the twin takes the library's.
 
@@ -6,12 +6,13 @@ use crate::grid::{Ball, Grid};
 use crate::polynomial::Polynomial;
 use crate::real::Real;
 use crate::refine::PointCells;
-use kernels::layout::GridInfo;
+use kernels::layout::{GridInfo, MOST_SKIPPED};
 
 /// The points of each cell.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CellLists {
-    /// First and past-the-last entry of each cell in `slots`; empty cells have zeros.
+    /// First and past-the-last entry of each cell in `slots`; of an empty cell both are its distance, in cells along
+    /// any axis, to the next that is not, at most `MOST_SKIPPED`.
     pub cells: Vec<[u32; 2]>,
     /// Slots, cell after cell, in the order of (object, place in the file) within a cell.
     pub slots: Vec<u32>,
@@ -69,5 +70,31 @@ pub fn build_grid<R: Real>(
         }
         range[1] = at as u32 + 1;
     }
+    skip_cells(info.resolution, &mut cells);
     CellLists { cells, slots: pairs.into_iter().map(|pair| pair.1).collect() }
+}
+
+/// Twin of `skip_cells`: the range of an empty cell begins, and ends, at its distance to the next that is not.
+fn skip_cells([width, height, depth]: [u32; 3], cells: &mut [[u32; 2]]) {
+    let far = |range: &[u32; 2]| if range[0] < range[1] { 0 } else { MOST_SKIPPED };
+    let mut reaches: Vec<u32> = cells.iter().map(far).collect();
+    for (stride, resolution) in [(1, width), (width, height), (width * height, depth)] {
+        reaches = (0..reaches.len() as u32)
+            .map(|cell| {
+                let at = cell / stride % resolution;
+                let low = at.saturating_sub(MOST_SKIPPED - 1);
+                let high = (at + MOST_SKIPPED - 1).min(resolution - 1);
+                let reach = |other: u32| {
+                    let beside = reaches[(cell + other * stride - at * stride) as usize];
+                    at.abs_diff(other).max(beside)
+                };
+                (low..=high).map(reach).fold(MOST_SKIPPED, u32::min)
+            })
+            .collect();
+    }
+    for (range, reach) in cells.iter_mut().zip(reaches) {
+        if reach > 0 {
+            *range = [reach; 2];
+        }
+    }
 }

@@ -5,7 +5,7 @@
 
 use crate::batch::{BATCH, test_batch};
 use crate::camera_rays::Ray;
-use crate::grid::{Grid, nearest_crossing};
+use crate::grid::{Grid, empty_around, nearest_crossing};
 use crate::grid_build::CellLists;
 use crate::polynomial::Polynomial;
 use crate::real::{NO_HIT, Real};
@@ -31,16 +31,21 @@ pub fn grid_trace<R: Real>(
         within[0] = if later || ray.cells == 0 { R::of(-NO_HIT) } else { within[0] };
         within[1] = if later { R::of(NO_HIT) } else { within[1] };
         let [first, end] = lists.cells[grid.cell_id(at) as usize].map(|at| at as usize);
-        for batch in lists.slots[first..end].chunks(BATCH) {
+        let mut start = first;
+        while start < end {
+            let stop = end.min(start / 4 * 4 + BATCH); // slots are read four at a time
+            let batch = &lists.slots[start..stop];
+            start = stop;
             test_batch(ray, batch, polynomials, Some(within), sheet);
             if any_hit && ray.hit_slot != NONE {
                 ray.cell = NONE;
                 return;
             }
         }
-        let exits = grid.crossings(at, o, d);
+        let around = empty_around(lists.cells[grid.cell_id(at) as usize]);
+        let exits = grid.crossings(at, around, o, d);
         let ends = ray.hit_t <= nearest_crossing(exits);
-        next = if ends { None } else { grid.step(at, exits, d) };
+        next = if ends { None } else { grid.step(at, around, exits, o, d) };
         ray.cells += u32::from(next.is_some());
     }
     ray.cell = NONE;

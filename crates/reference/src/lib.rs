@@ -78,39 +78,53 @@ pub struct Reference<R> {
     pub visible: Vec<[R; VOLUME_LIGHTS as usize]>,
 }
 
+/// The fits of all points, by slot, and the rims among them; `None` where the watcher asked for an end. The
+/// neighbours come from a k-d tree: what preparation on the CPU costs.
+#[must_use]
+pub fn fit_surfaces<R: Real>(plan: &Plan, watch: &dyn Watch) -> Option<(Vec<Fitted<R>>, Rims)> {
+    let cloud = &plan.cloud;
+    let mut fitted: Vec<Fitted<R>> = Vec::with_capacity(cloud.points.len());
+    let mut rims = Rims::default();
+    watch.stage("fitting surfaces", cloud.points.len() as u64);
+    for (object, params) in cloud.objects.iter().zip(&plan.fits) {
+        let range = object.range();
+        let search = NeighborSearch::new(&cloud.points[range.clone()], object.first_slot);
+        let k = params.neighbors as usize;
+        let sizes = (params.feature_size < 0.0).then(|| search.smoothed_sizes(k));
+        for first in (0..range.len()).step_by(FIT_BATCH) {
+            if watch.interrupted() {
+                return None;
+            }
+            let batch = first..range.len().min(first + FIT_BATCH);
+            let lists = search.nearest(batch.clone(), k);
+            let fits: Vec<_> = lists
+                .par_chunks(k)
+                .zip(range.start + first..range.start + batch.end)
+                .map(|(list, slot)| {
+                    let size = sizes.as_ref().map(|sizes| sizes[slot - range.start]);
+                    fit_polynomials::fit_polynomial(&cloud.points, slot, list, params, size)
+                })
+                .collect();
+            let slots = (range.start + first) as u32..;
+            for ((slot, fit), list) in slots.zip(&fits).zip(lists.chunks(k)) {
+                let fit: &Fitted<R> = fit;
+                if Rims::is_open(&fit.rim) {
+                    rims.add(slot, &fit.rim, list);
+                }
+            }
+            fitted.extend(fits);
+            watch.done(fitted.len() as u64);
+        }
+    }
+    Some((fitted, rims))
+}
+
 impl<R: Real> Reference<R> {
     /// Fits the surfaces of a plan and builds the grid; `None` where the watcher asked for an end.
     #[must_use]
     pub fn new(plan: &Plan, watch: &dyn Watch) -> Option<Self> {
         let cloud = &plan.cloud;
-        let mut fitted: Vec<Fitted<R>> = Vec::with_capacity(cloud.points.len());
-        let mut rims = Rims::default();
-        watch.stage("fitting surfaces", cloud.points.len() as u64);
-        for (object, params) in cloud.objects.iter().zip(&plan.fits) {
-            let range = object.range();
-            let search = NeighborSearch::new(&cloud.points[range.clone()], object.first_slot);
-            let k = params.neighbors as usize;
-            let sizes = (params.feature_size < 0.0).then(|| search.smoothed_sizes(k));
-            for first in (0..range.len()).step_by(FIT_BATCH) {
-                if watch.interrupted() {
-                    return None;
-                }
-                let batch = first..range.len().min(first + FIT_BATCH);
-                let lists = search.nearest(batch.clone(), k);
-                let fits: Vec<_> = lists
-                    .par_chunks(k)
-                    .zip(range.start + first..range.start + batch.end)
-                    .map(|(list, slot)| {
-                        let size = sizes.as_ref().map(|sizes| sizes[slot - range.start]);
-                        fit_polynomials::fit_polynomial(&cloud.points, slot, list, params, size)
-                    })
-                    .collect();
-                let found: Vec<_> = fits.iter().map(|fit: &Fitted<R>| fit.rim).collect();
-                rims.add((range.start + first) as u32, &found, &lists);
-                fitted.extend(fits);
-                watch.done(fitted.len() as u64);
-            }
-        }
+        let (fitted, rims) = fit_surfaces::<R>(plan, watch)?;
         let outcomes: Vec<FitOutcome> = fitted
             .iter()
             .map(|fit| FitOutcome {

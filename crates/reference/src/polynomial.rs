@@ -94,9 +94,13 @@ impl<R: Real> Polynomial<R> {
     pub fn entered_within(&self, o: V3<R>, d: V3<R>, within: [R; 2]) -> bool {
         let (s, y0) = nearest_approach(o, d, self.center);
         let b = self.trust;
-        let entry = s - (b * b - y0.dot(y0)).max(R::of(0.0)).sqrt();
+        let under_root = b * b - y0.dot(y0); // the ray enters at s - its root
         let margin = R::of(ENTRY_MARGIN) * b;
-        entry >= within[0] - margin && entry <= within[1] + margin
+        let behind_low = s - (within[0] - margin);
+        let behind_high = s - (within[1] + margin);
+        behind_low >= R::of(0.0)
+            && behind_low * behind_low >= under_root
+            && (behind_high <= R::of(0.0) || behind_high * behind_high <= under_root)
     }
 
     /// The unit normal of the polynomial's own level through x.

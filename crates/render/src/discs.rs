@@ -4,6 +4,7 @@
 //! next and grow where they must.
 
 use crate::passes::{DiscCount, DiscEmit, DiscRanges};
+use crate::state::RayLoop;
 use gpu::{Buffer, Device, GpuError, Recorder, Timings};
 use kernels::layout::{DepthRanks, DiscParams};
 use plan::{MAX_DISC_PAIRS, Plan, Window, screen_tiles};
@@ -53,11 +54,11 @@ pub(crate) struct Discs {
 
 impl Discs {
     /// For a scene of `point_count` points.
-    pub fn new(device: &Arc<Device>, point_count: u32) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, point_count: u32, form: RayLoop) -> Result<Self, GpuError> {
         Ok(Self {
             device: Arc::clone(device),
-            count: DiscCount::new(device)?,
-            emit: DiscEmit::new(device)?,
+            count: DiscCount::new(device, form)?,
+            emit: DiscEmit::new(device, form)?,
             ranges: DiscRanges::new(device)?,
             scan: Scan::new(device)?,
             sort: Sort::new(device)?,
@@ -73,7 +74,7 @@ impl Discs {
     }
 
     /// Lists the points of each screen tile of a tile of the picture; `None` where the pairs are
-    /// too many. `timed` is told what each submission cost.
+    /// too many. `timed` is told what each submission cost; the last is the caller's.
     pub fn bin(
         &mut self,
         rec: &mut Recorder,
@@ -89,7 +90,6 @@ impl Discs {
         }
         let params = DiscParams { pair_count, ..counted };
         self.list_pairs(rec, &surfaces.polynomials, &params, screen_tiles(tile))?;
-        timed(&rec.submit()?);
         Ok(self.lists.as_ref())
     }
 

@@ -8,31 +8,35 @@
 mod in_volumes;
 
 use crate::RenderError;
+use crate::budget::{Budget, MOST};
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
-    AlbedoIo, CameraRays, CameraRaysIo, Classify, ClassifyIo, DiscTrace, DiscTraceIo, GridTrace,
-    GridTraceIo, Isosurface, ListLive, March, PointLight, Records, Refine, RefineIo, Scatter,
-    ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, Start, SurfaceHit, SurfaceHitIo,
+    AlbedoIo, CameraRays, CameraRaysIo, CameraTrace, CameraTraceIo, Classify, ClassifyIo,
+    DiscTrace, DiscTraceIo, GridTrace, GridTraceIo, Isosurface, ListMarked, March, Marks,
+    PointLight, Refine, RefineIo, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo,
+    Start, SurfaceHit, SurfaceHitIo,
 };
 use crate::samples::Samples;
 use crate::state::{RayLoop, RayState};
 use crate::volumes::VolumeBuffers;
 use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder, Timings};
-use kernels::layout::{FilmPixel, Hit, NONE, TraceParams, WaveParams};
-use plan::{Picture, Plan, Rays, Window, camera_wave};
+use kernels::layout::{
+    FilmPixel, Hit, NONE, Path, Polynomial, TraceParams, WAVE_SHARES_PATH, WaveParams,
+};
+use plan::{MAX_DISC_PAIRS, Picture, Plan, Rays, Window, camera_wave};
 use points::Watch;
-use points::device::Scan;
 use points::device::Surfaces;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Loop iterations that a ray may spend in one pass. lavapipe silently stops all loops of a shader
-/// group at 65 535 iterations; eight rays share that count there, and each may go 64 over its share.
-const WORK_PER_PASS: u32 = 7_000;
+/// Of 16 bytes.
+const TEXELS_A_POLYNOMIAL: u64 = (size_of::<Polynomial>() / 16) as u64;
+/// Of a path, the longest of a wave's records.
+const TEXELS_A_RAY: u64 = (size_of::<Path>() / 16) as u64;
 
-/// Rays are listed where no more than one of so many of the last pass lives.
-const LISTED_SHARE: u32 = 2;
+/// Rays are listed where at least one of so many of the last pass has ended.
+const ENDED_SHARE: u32 = 4;
 
 const EMPTY_PIXEL: FilmPixel = FilmPixel {
     color: [0.0; 4],
@@ -74,7 +78,8 @@ pub struct Traversal {
 impl Traversal {
     /// Adds what the traversal among these passes took.
     fn add(&mut self, traced: Traced, passes: &[(&'static str, f64)]) {
-        let traversal = |pass: &&(&str, f64)| [GridTrace::NAME, DiscTrace::NAME].contains(&pass.0);
+        let names = [GridTrace::NAME, DiscTrace::NAME, CameraTrace::NAME];
+        let traversal = |pass: &&(&str, f64)| names.contains(&pass.0);
         let milliseconds: f64 = passes.iter().filter(traversal).map(|pass| pass.1).sum();
         match traced {
             Traced::ByDiscs(_) | Traced::Camera => self.camera += milliseconds,
@@ -110,19 +115,29 @@ pub struct Renderer {
     samples: Samples,
     hits: Buffer,
     live: Buffer,
+    live_marks: Marks,
+    /// The last list of those that live, and the one before.
+    live_rays: [Buffer; 2],
     wave: WaveBuffers,
     volumes: Option<VolumeBuffers>,
     state: RayState,
+    form: RayLoop,
     shadows: RayState,
     discs: Discs,
+    /// Whether no ray of `camera_trace` has needed more work than it may spend.
+    ends_at_once: bool,
+    /// Rays of this sample: hits times lights, and rays of waves from surfaces.
+    asked: Asked,
     passes: Passes,
     recorder: Recorder,
+    budget: Budget,
     device: Arc<Device>,
 }
 
 /// The pipelines of a frame.
 struct Passes {
     camera_rays: CameraRays,
+    camera_trace: CameraTrace,
     disc_trace: DiscTrace,
     grid_trace: GridTrace,
     surface_hit: SurfaceHit,
@@ -134,34 +149,48 @@ struct Passes {
     march: March,
     isosurface: Isosurface,
     point_light: PointLight,
-    list_live: ListLive,
-    scan: Scan,
+    list_marked: ListMarked,
 }
 
 impl Passes {
-    fn new(
-        device: &Arc<Device>,
-        records: Records,
-        rays: u32,
-        form: RayLoop,
-    ) -> Result<Self, RenderError> {
+    fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, RenderError> {
         Ok(Self {
             camera_rays: CameraRays::new(device, form)?,
-            disc_trace: DiscTrace::new(device, records, form)?,
-            grid_trace: GridTrace::new(device, records, form)?,
-            surface_hit: SurfaceHit::new(device, form)?,
-            refine: Refine::new(device, records, form)?,
-            classify: Classify::new(device, form)?,
-            shadow_rays: ShadowRays::new(device, form)?,
-            shade: Shade::new(device, form)?,
-            scatter: Scatter::new(device, form)?,
+            camera_trace: CameraTrace::new(device, scene)?,
+            disc_trace: DiscTrace::new(device, form)?,
+            grid_trace: GridTrace::new(device, form)?,
+            surface_hit: SurfaceHit::new(device, form, scene)?,
+            refine: Refine::new(device, form)?,
+            classify: Classify::new(device, form, scene)?,
+            shadow_rays: ShadowRays::new(device, form, scene)?,
+            shade: Shade::new(device, form, scene)?,
+            scatter: Scatter::new(device, form, scene)?,
             march: March::new(device, form)?,
             isosurface: Isosurface::new(device, form)?,
             point_light: PointLight::new(device, form)?,
-            list_live: ListLive::new(device, rays, form)?,
-            scan: Scan::new(device)?,
+            list_marked: ListMarked::new(device)?,
         })
     }
+}
+
+/// How many rays of a sample there would be, had none a reason not to be sent.
+#[derive(Debug, Clone, Copy, Default)]
+struct Asked {
+    /// Diffuse hits, for each light.
+    lights: u64,
+    /// Rays from surfaces that are not diffuse.
+    scattered: u64,
+}
+
+/// What became of the rays of a wave.
+#[derive(Debug, Clone, Copy)]
+struct Classes {
+    /// Hits on diffuse surfaces that light is asked for.
+    lit: u32,
+    /// Hits on others.
+    scattering: u32,
+    /// Rays of the next wave.
+    next: u32,
 }
 
 /// Which rays a pass works on.
@@ -191,19 +220,6 @@ impl Renderer {
     /// # Errors
     /// A device without the memory, a buffer over its limits, a lost device, an interruption.
     pub fn new(device: &Arc<Device>, plan: &Plan, watch: &dyn Watch) -> Result<Self, RenderError> {
-        Self::with_records(device, plan, Records::best_for(device, plan.cloud.points.len()), watch)
-    }
-
-    /// As [`Renderer::new`], with a given way to read polynomials.
-    ///
-    /// # Errors
-    /// As [`Renderer::new`].
-    pub fn with_records(
-        device: &Arc<Device>,
-        plan: &Plan,
-        records: Records,
-        watch: &dyn Watch,
-    ) -> Result<Self, RenderError> {
         let surfaces = Surfaces::build(
             device,
             &plan.cloud,
@@ -213,10 +229,14 @@ impl Renderer {
             &plan.volumes.stand_ins(),
             watch,
         )?;
-        let form = RayLoop::of(plan.ray_loop);
         let tiles = plan.tiles();
         let pixels = tiles.iter().map(Window::pixels).max().unwrap_or(1) as u64;
         let rays = tiles.iter().map(camera_wave).max().unwrap_or(1) * plan.rays_per_pixel();
+        let records = plan.cloud.points.len() as u64 * TEXELS_A_POLYNOMIAL;
+        let lists = (surfaces.cells.bytes() / 8).max(u64::from(MAX_DISC_PAIRS));
+        let longest = records.max(lists).max(u64::from(rays) * TEXELS_A_RAY);
+        let form = RayLoop::of(plan.ray_loop, device, longest);
+        let live_rays = || Buffer::new(device, "list of live rays", u64::from(rays) * 4);
         let shadows = if plan.lights.is_empty() { 1 } else { rays };
         Ok(Self {
             surfaces,
@@ -231,15 +251,33 @@ impl Renderer {
             film: Buffer::new(device, "film", pixels * size_of::<FilmPixel>() as u64)?,
             hits: Buffer::new(device, "hits", u64::from(rays) * size_of::<Hit>() as u64)?,
             live: Buffer::new(device, "live rays", 8)?,
+            live_marks: Marks::new(device, rays, false)?,
+            live_rays: [live_rays()?, live_rays()?],
             wave: WaveBuffers::new(device, rays, plan.scatters())?,
             volumes: VolumeBuffers::new(device, &plan.volumes, rays)?,
             state: RayState::new(device, rays, form, plan.scatters())?,
+            form,
             shadows: RayState::new(device, shadows, form, false)?,
-            discs: Discs::new(device, plan.cloud.points.len() as u32)?,
-            passes: Passes::new(device, records, rays, form)?,
+            ends_at_once: true,
+            asked: Asked::default(),
+            discs: Discs::new(device, plan.cloud.points.len() as u32, form)?,
+            passes: Passes::new(device, form, plan.scene_bits())?,
             recorder: Recorder::new(device)?,
+            budget: Budget::of(device.info()),
             device: Arc::clone(device),
         })
+    }
+
+    /// Lets a ray spend `work` loop iterations in one pass from now on, at least 64 and at most 7000, instead of as many as
+    /// suit the device. No picture depends on it.
+    pub fn set_budget(&mut self, work: u32) {
+        self.budget = Budget::fixed(work);
+    }
+
+    /// Where the ray state lives: what the scene asked for, or was chosen.
+    #[must_use]
+    pub fn ray_loop(&self) -> RayLoop {
+        self.form
     }
 
     /// The surfaces that are traced.
@@ -276,8 +314,9 @@ impl Renderer {
             let started = Instant::now();
             for sample in 0..plan.samples {
                 self.trace_sample(plan, &tile, sample, &mut stats, watch)?;
-                let [shadow, reflected, refracted] = self.wave.read_tally()?;
-                let camera = tile.pixels() as u64;
+                let [dark, reflected] = self.wave.read_tally()?;
+                let (camera, shadow) = (tile.pixels() as u64, self.asked.lights - dark);
+                let refracted = self.asked.scattered - reflected;
                 picture.rays += Rays { camera, shadow, reflected, refracted };
             }
             stats.trace += started.elapsed();
@@ -301,22 +340,26 @@ impl Renderer {
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
         let mut params = plan.wave_of(tile, sample);
+        self.asked = Asked::default();
         self.recorder.fill(self.wave.tally(), 0, self.wave.tally().bytes(), 0);
-        self.start_rays(plan, tile, sample);
-        let mut traced = match self.bin_discs(plan, tile, stats)? {
-            true => Traced::ByDiscs(tile.size),
-            false => Traced::Camera,
-        };
+        let by_discs = self.bin_discs(plan, tile, stats)?;
+        let mut traced = if by_discs { Traced::ByDiscs(tile.size) } else { Traced::Camera };
+        match self.trace_at_once(plan, tile, &params, stats)? {
+            Some(classes) => {
+                params.flags |= WAVE_SHARES_PATH;
+                self.go_on(plan, &mut params, classes, stats, watch)?;
+                traced = Traced::Scattered;
+            }
+            None => self.start_rays(plan, tile, sample),
+        }
         while params.ray_count > 0 {
             self.trace_to_the_end(plan, [params.ray_count; 2], traced, stats, watch)?;
             traced = if traced == Traced::Scattered { traced } else { Traced::Camera };
             self.settle_hits(plan, params.ray_count, traced, stats, watch)?;
             self.isosurfaces(plan, params.ray_count, false, stats, watch)?;
             self.march(plan, params.ray_count, false, stats, watch)?;
-            let lit = self.classify(plan, &params, stats)?;
-            self.shade(plan, &WaveParams { ray_count: lit, ..params }, stats, watch)?;
-            params.ray_count = self.scatter(plan, &params, stats)?;
-            params.wave += 1;
+            let classes = self.classify(plan, &params, stats)?;
+            self.go_on(plan, &mut params, classes, stats, watch)?;
             traced = Traced::Scattered;
         }
         self.samples.record(&mut self.recorder, &self.film, plan, tile, sample);
@@ -336,6 +379,88 @@ impl Renderer {
         };
         let params = plan.camera_of(tile, sample);
         self.passes.camera_rays.record(&mut self.recorder, io, &params);
+    }
+
+    /// The first wave in one pass, if screen tiles are listed, its rays meet nothing but surfaces, and all of them
+    /// end within one pass's work.
+    fn trace_at_once(
+        &mut self,
+        plan: &Plan,
+        tile: &Window,
+        params: &WaveParams,
+        stats: &mut FrameStats,
+    ) -> Result<Option<Classes>, RenderError> {
+        let may_end = self.form == RayLoop::Queue && self.ends_at_once;
+        if !(may_end && plan.by_discs(tile) && plan.meets_surfaces_alone()) {
+            return Ok(None);
+        }
+        let Some(lists) = self.discs.lists() else { return Ok(None) };
+        let io = CameraTraceIo {
+            lists,
+            surfaces: &self.surfaces,
+            objects: &self.objects,
+            images: &self.images,
+            texels: &self.texels,
+            film: &self.film,
+            state: self.state.started(),
+            hits: &self.hits,
+            wave: &self.wave,
+            live: &self.live,
+        };
+        let traced = plan.camera_trace_of(tile, &self.surfaces.grid, MOST);
+        self.recorder.fill(&self.live, 0, 4, 0);
+        record_no_marks(&mut self.recorder, &self.wave, plan, params);
+        self.passes.camera_trace.record(&mut self.recorder, io, &traced);
+        self.record_lists(plan, params);
+        let timings = self.recorder.submit()?;
+        stats.add_kernels(&timings.passes);
+        stats.traversal.add(Traced::Camera, &timings.passes);
+        stats.passes += 1;
+        let mut left = [0];
+        self.live.read(0, &mut left)?;
+        self.ends_at_once = left == [0];
+        if self.ends_at_once { Ok(Some(self.read_classes(plan, params)?)) } else { Ok(None) }
+    }
+
+    /// From what has become of a wave's rays to light and the next wave, whose parameters these are then.
+    fn go_on(
+        &mut self,
+        plan: &Plan,
+        params: &mut WaveParams,
+        classes: Classes,
+        stats: &mut FrameStats,
+        watch: &dyn Watch,
+    ) -> Result<(), RenderError> {
+        self.shade(plan, &WaveParams { ray_count: classes.lit, ..*params }, stats, watch)?;
+        self.scatter(plan, &WaveParams { ray_count: classes.scattering, ..*params }, stats)?;
+        self.asked.lights += u64::from(classes.lit) * u64::from(params.light_count);
+        self.asked.scattered += u64::from(classes.next);
+        params.ray_count = classes.next;
+        params.flags = 0;
+        Ok(())
+    }
+
+    /// Records the lists of a wave's rays by what has become of them.
+    fn record_lists(&mut self, plan: &Plan, params: &WaveParams) {
+        let (rec, wave, list) = (&mut self.recorder, &self.wave, &self.passes.list_marked);
+        if params.light_count > 0 {
+            list.record(rec, &wave.lit, params.ray_count, None, wave.lit_rays());
+        }
+        if plan.scatters() {
+            list.record(rec, &wave.scattering, params.ray_count, None, wave.scattering_rays());
+            list.record_offsets(rec, &wave.next, params.ray_count);
+        }
+    }
+
+    /// What [`Renderer::record_lists`] has counted.
+    fn read_classes(&self, plan: &Plan, params: &WaveParams) -> Result<Classes, RenderError> {
+        let (wave, rays) = (&self.wave, params.ray_count);
+        let lit = if params.light_count > 0 { wave.lit.read_total(rays)? } else { 0 };
+        let [scattering, next] = match plan.scatters() {
+            true => [wave.scattering.read_total(rays)?, wave.next.read_total(rays)?],
+            false => [0; 2],
+        };
+        Ok(Classes { lit, scattering, next })
     }
 
     /// Lists the points of each screen tile, if this tile is to be traced by discs; whether it is.
@@ -369,25 +494,31 @@ impl Renderer {
             Traced::PastObject(object) => object,
             _ => NONE,
         };
-        let wave =
-            TraceParams { ray_count, cells, work: WORK_PER_PASS, any_hit, listed: 0, passed };
+        let work = self.budget.work();
+        let wave = TraceParams { ray_count, cells, work, any_hit, listed: 0, passed };
         let state = if traced.to_light() { &mut self.shadows } else { &mut self.state };
-        let (surfaces, live, live_rays) = (&self.surfaces, &self.live, &self.passes.list_live.rays);
+        let (surfaces, live, live_rays) = (&self.surfaces, &self.live, &mut self.live_rays);
+        let (list_marked, live_marks) = (&self.passes.list_marked, &self.live_marks);
         let mut params = wave;
         while alive > 0 {
             if watch.interrupted() {
                 return Err(RenderError::Interrupted);
             }
             self.recorder.fill(live, 0, 4, 0);
+            params.work = self.budget.work();
             match (traced, self.discs.lists()) {
                 (Traced::ByDiscs(tile_size), Some(lists)) => {
                     let io = DiscTraceIo { lists, surfaces, state, live };
                     self.passes.disc_trace.record(&mut self.recorder, io, tile_size, &params);
                 }
                 _ => {
-                    if alive <= params.ray_count / LISTED_SHARE {
-                        self.passes.list_live.record(&mut self.recorder, &state.current, &wave);
-                        params = TraceParams { ray_count: alive, listed: 1, ..wave };
+                    if alive < params.ray_count - params.ray_count / ENDED_SHARE {
+                        live_rays.swap(0, 1);
+                        let from = (params.listed == 1).then_some(&live_rays[1]);
+                        let (rec, rays) = (&mut self.recorder, params.ray_count);
+                        list_marked.record(rec, live_marks, rays, from, &live_rays[0]);
+                        let work = params.work;
+                        params = TraceParams { ray_count: alive, listed: 1, work, ..wave };
                     }
                     let from = match traced {
                         Traced::ByDiscs(_) | Traced::Camera => Start::Camera,
@@ -395,7 +526,10 @@ impl Renderer {
                             Start::Surface
                         }
                     };
-                    let io = GridTraceIo { surfaces, state, live, live_rays };
+                    live_marks.record_none(&mut self.recorder, params.ray_count);
+                    let live_rays = &live_rays[0];
+                    let marks = &live_marks.bits;
+                    let io = GridTraceIo { surfaces, state, live, marks, live_rays };
                     self.passes.grid_trace.record(&mut self.recorder, io, from, &params);
                 }
             }
@@ -409,6 +543,7 @@ impl Renderer {
             let mut left = [0];
             live.read(0, &mut left)?;
             [alive] = left;
+            self.budget.passed(timings.passes.iter().map(|pass| pass.1).sum(), alive > 0);
             watch.done(stats.rays);
         }
         Ok(())
@@ -426,8 +561,10 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         let params =
             TraceParams { ray_count, cells: 0, work: 0, any_hit: 0, listed: 0, passed: NONE };
-        let bytes = u64::from(ray_count) * size_of::<Hit>() as u64;
-        self.recorder.fill(&self.hits, 0, bytes, 0);
+        if plan.refines() {
+            let bytes = u64::from(ray_count) * size_of::<Hit>() as u64;
+            self.recorder.fill(&self.hits, 0, bytes, 0);
+        }
         loop {
             self.recorder.fill(&self.live, 0, 8, 0);
             let io = SurfaceHitIo {
@@ -448,7 +585,9 @@ impl Renderer {
             }
             let (surfaces, state) = (&self.surfaces, &self.state.current);
             let (rec, hits) = (&mut self.recorder, &self.hits);
-            self.passes.refine.record_resume(rec, surfaces, state, hits, &params);
+            self.live_marks.record_none(rec, ray_count);
+            let marks = &self.live_marks.bits;
+            self.passes.refine.record_resume(rec, surfaces, state, hits, marks, &params);
             self.trace_to_the_end(plan, [ray_count, rejected], traced, stats, watch)?;
         }
     }
@@ -492,13 +631,13 @@ impl Renderer {
         Ok(counts)
     }
 
-    /// What becomes of each ray of a wave; returns how many hit a diffuse surface.
+    /// What becomes of each ray of a wave.
     fn classify(
         &mut self,
         plan: &Plan,
         params: &WaveParams,
         stats: &mut FrameStats,
-    ) -> Result<u32, RenderError> {
+    ) -> Result<Classes, RenderError> {
         let io = ClassifyIo {
             state: &self.state.current,
             polynomials: &self.surfaces.polynomials,
@@ -507,20 +646,13 @@ impl Renderer {
             texels: &self.texels,
             hits: &self.hits,
             film: &self.film,
-            paths: self.wave.paths(),
-            lit: self.wave.lit(),
-            next: self.wave.next(),
-            lit_rays: self.wave.lit_rays(),
+            wave: &self.wave,
         };
-        let (rec, scan) = (&mut self.recorder, &self.passes.scan);
-        self.passes.classify.record(rec, io, params);
-        self.wave.record_offsets(rec, scan, self.wave.lit(), params.ray_count);
-        if plan.scatters() {
-            self.wave.record_offsets(rec, scan, self.wave.next(), params.ray_count);
-        }
-        self.passes.classify.record_list(rec, io, params);
-        stats.add_kernels(&rec.submit()?.passes);
-        Ok(WaveBuffers::read_total(self.wave.lit(), params.ray_count)?)
+        record_no_marks(&mut self.recorder, &self.wave, plan, params);
+        self.passes.classify.record(&mut self.recorder, io, params);
+        self.record_lists(plan, params);
+        stats.add_kernels(&self.recorder.submit()?.passes);
+        self.read_classes(plan, params)
     }
 
     /// Light after light, shadow rays from a wave's diffuse hits, and then Lambert's law. The wave's rays
@@ -532,17 +664,18 @@ impl Renderer {
         stats: &mut FrameStats,
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
-        if params.ray_count == 0 {
+        if params.ray_count == 0 || params.light_count == 0 {
             return Ok(());
         }
+        let paths = self.paths_of(params);
         for light in 0..params.light_count {
             let io = ShadowRaysIo {
                 shadows: &self.shadows,
                 grid_info: &self.surfaces.grid_info,
-                hits: &self.hits,
+                lit_hits: self.wave.lit_hits(),
                 lights: &self.lights,
                 film: &self.film,
-                paths: self.wave.paths(),
+                paths: &paths,
                 lit_rays: self.wave.lit_rays(),
                 light_sums: self.wave.light_sums(),
                 tally: self.wave.tally(),
@@ -563,9 +696,9 @@ impl Renderer {
                 images: &self.images,
                 texels: &self.texels,
             },
-            hits: &self.hits,
+            lit_hits: self.wave.lit_hits(),
             film: &self.film,
-            paths: self.wave.paths(),
+            paths: &paths,
             lit_rays: self.wave.lit_rays(),
             light_sums: self.wave.light_sums(),
         };
@@ -574,16 +707,17 @@ impl Renderer {
         Ok(())
     }
 
-    /// Makes the next wave; returns how many rays it has.
+    /// Makes the next wave. The wave's rays are those that hit what is not diffuse.
     fn scatter(
         &mut self,
         plan: &Plan,
         params: &WaveParams,
         stats: &mut FrameStats,
-    ) -> Result<u32, RenderError> {
-        if !plan.scatters() {
-            return Ok(0);
+    ) -> Result<(), RenderError> {
+        if !plan.scatters() || params.ray_count == 0 {
+            return Ok(());
         }
+        let paths = self.paths_of(params);
         let io = ScatterIo {
             state: &self.state,
             surfaces: &self.surfaces,
@@ -592,16 +726,33 @@ impl Renderer {
             film: &self.film,
             images: &self.images,
             texels: &self.texels,
-            paths: self.wave.paths(),
-            next_paths: self.wave.next_paths(),
-            next: self.wave.next(),
-            tally: self.wave.tally(),
+            paths: &paths,
+            wave: &self.wave,
         };
         self.passes.scatter.record(&mut self.recorder, io, params);
         stats.add_kernels(&self.recorder.submit()?.passes);
         self.state.swap();
         self.wave.swap();
-        Ok(WaveBuffers::read_total(self.wave.next(), params.ray_count)?)
+        Ok(())
+    }
+
+    /// Of the wave's rays, or the one that they share.
+    fn paths_of(&self, params: &WaveParams) -> Buffer {
+        match params.flags & WAVE_SHARES_PATH {
+            0 => self.wave.paths().clone(),
+            _ => self.camera_path.clone(),
+        }
+    }
+}
+
+/// Records that nothing is known yet of what becomes of a wave's rays.
+fn record_no_marks(rec: &mut Recorder, wave: &WaveBuffers, plan: &Plan, params: &WaveParams) {
+    if params.light_count > 0 {
+        wave.lit.record_none(rec, params.ray_count);
+    }
+    if plan.scatters() {
+        wave.scattering.record_none(rec, params.ray_count);
+        wave.next.record_none(rec, params.ray_count);
     }
 }
 

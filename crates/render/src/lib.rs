@@ -6,6 +6,7 @@
 //! same bytes, which the test `every_k_gives_the_same_bytes` checks.
 #![forbid(unsafe_code)]
 
+mod budget;
 mod discs;
 mod frame;
 mod passes;
@@ -16,8 +17,8 @@ mod wave;
 
 pub use discs::DiscLists;
 pub use frame::{FrameStats, Renderer, Traversal};
-pub use passes::Records;
 pub use points::device::BuildError;
+pub use state::RayLoop;
 
 /// Why a frame could not be finished.
 #[derive(Debug, thiserror::Error)]
@@ -39,6 +40,9 @@ pub enum RenderError {
         /// Bytes allowed.
         limit: u64,
     },
+    /// More points than the device has memory for, said before any is taken.
+    #[error(transparent)]
+    Memory(BuildError),
     /// The watcher asked for an end.
     #[error("interrupted")]
     Interrupted,
@@ -48,6 +52,7 @@ impl From<BuildError> for RenderError {
     fn from(error: BuildError) -> Self {
         match error {
             BuildError::Gpu(error) => Self::Gpu(error),
+            error @ BuildError::Memory { .. } => Self::Memory(error),
             BuildError::Interrupted => Self::Interrupted,
         }
     }

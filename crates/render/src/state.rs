@@ -1,6 +1,6 @@
 //! The ray state: four storage images, twice, in place of the paper's render targets; or a queue in a buffer.
 
-use gpu::{Binding, Buffer, Device, GpuError, Image, ImageFormat, PassBuilder};
+use gpu::{Binding, Buffer, Device, GpuError, Image, ImageFormat, PassBuilder, Texel};
 use kernels::layout::{STATE_IN, STATE_OUT, STATE_ROW, StateRay};
 use std::sync::Arc;
 
@@ -10,6 +10,7 @@ pub enum RayLoop {
     /// In four images that are read and four that are written: every pass carries every ray on (\[T\] §5).
     Images,
     /// In a buffer, in place: a pass writes of a ray what it changes, and a ray that is done costs nothing.
+    /// Kernels read rays, polynomials and the grid's lists through uniform texel buffers then.
     Queue,
 }
 
@@ -18,33 +19,41 @@ pub enum RayLoop {
 pub(crate) enum Touch {
     Reads,
     Writes,
-    /// Reads a ray, and writes the same one.
+    /// Reads rays, and writes the same ones, or those of the next wave.
     Updates,
-    /// Reads the rays of a wave, and writes those of the next.
-    Moves,
 }
 
 impl RayLoop {
-    /// What a scene asks for, or the better of both.
-    pub(crate) fn of(wanted: plan::RayLoop) -> Self {
+    /// What a scene asks for, or the better of both; images where the device's texel buffers are too short for
+    /// one of a list's `longest` texels.
+    pub(crate) fn of(wanted: plan::RayLoop, device: &Device, longest: u64) -> Self {
+        let fits = longest <= u64::from(device.limits().max_texel_buffer_elements);
         match wanted {
-            plan::RayLoop::Images => Self::Images,
-            plan::RayLoop::Queue | plan::RayLoop::Auto => Self::Queue,
+            plan::RayLoop::Queue | plan::RayLoop::Auto if fits => Self::Queue,
+            _ => Self::Images,
         }
     }
 
     /// The bindings of a kernel that touches the state.
     pub(crate) fn bindings(self, touch: Touch) -> Vec<(u32, Binding)> {
-        let at = |first: u32| match self {
+        let at = |first: u32, queue| match self {
             Self::Images => (0..4).map(|i| (first + i, Binding::StorageImage)).collect(),
-            Self::Queue => vec![(first, Binding::StorageBuffer)],
+            Self::Queue => vec![(first, queue)],
         };
-        let both = || [at(STATE_IN), at(STATE_OUT)].concat();
+        let read = || at(STATE_IN, Binding::UniformTexelBuffer(Texel::Four));
+        let written = || at(STATE_OUT, Binding::StorageBuffer);
         match touch {
-            Touch::Reads => at(STATE_IN),
-            Touch::Writes => at(STATE_OUT),
-            Touch::Updates if self == Self::Queue => at(STATE_IN),
-            Touch::Updates | Touch::Moves => both(),
+            Touch::Reads => read(),
+            Touch::Writes => written(),
+            Touch::Updates => [read(), written()].concat(),
+        }
+    }
+
+    /// How kernels read a list that no dispatch writes while they do.
+    pub(crate) fn read(self, texel: Texel) -> Binding {
+        match self {
+            Self::Images => Binding::StorageBuffer,
+            Self::Queue => Binding::UniformTexelBuffer(texel),
         }
     }
 
@@ -94,11 +103,7 @@ impl StoredRays {
 
     /// Binds them for a kernel that updates some of them in place.
     pub fn bind_in_place<'a>(&self, pass: PassBuilder<'a>) -> PassBuilder<'a> {
-        let pass = self.bind(pass, STATE_IN);
-        match self {
-            Self::Images(_) => self.bind(pass, STATE_OUT),
-            Self::Queue(_) => pass,
-        }
+        self.bind(self.bind(pass, STATE_IN), STATE_OUT)
     }
 
     fn bind<'a>(&self, pass: PassBuilder<'a>, first: u32) -> PassBuilder<'a> {

@@ -280,7 +280,7 @@ pub(crate) static RENDER: Table = Table {
             "cells_per_pass",
             count(0, u32::MAX as i64, "cells"),
             Value("0"),
-            "Cells a ray may cross in one dispatch. 0 lets the device decide, 1 is the paper's \
+            "Cells with points that a ray may cross in one dispatch. 0 lets the device decide, 1 is the paper's \
              loop. Changes no pixel.",
         ),
         key(
@@ -288,7 +288,8 @@ pub(crate) static RENDER: Table = Table {
             Kind::Choice(&["images", "queue", "auto"]),
             Value("\"auto\""),
             "Where the ray state lives: four images that are read and four that are written, as in the paper, or a \
-             queue in a buffer, in place, which \"auto\" takes. Changes no pixel.",
+             queue in a buffer, in place, which \"auto\" takes where texel buffers are long enough. Changes no \
+             pixel.",
         ),
         key("seed", count(0, u32::MAX as i64, ""), Value("0"), "Seed of all that is random."),
         key(

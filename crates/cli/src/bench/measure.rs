@@ -23,11 +23,12 @@ pub fn measure(
     case: &Case,
     engine: &Engine,
     runs: u32,
+    on_cpu: bool,
     progress: &Progress,
 ) -> Result<Row, Failure> {
     // Held, so that temporary files are removed before an interruption ends the process.
     interrupt::held(|| match case.generated {
-        None => timed(case, &case.input, engine, runs, progress),
+        None => timed(case, &case.input, engine, [runs, u32::from(on_cpu)], progress),
         Some((shape, count)) => {
             memory::require_points(u64::from(count))?;
             let folder = tempfile::Builder::new()
@@ -42,7 +43,7 @@ pub fn measure(
                 object.points = path;
                 object.points_as_written = name;
             }
-            timed(case, &input, engine, runs, progress)
+            timed(case, &input, engine, [runs, u32::from(on_cpu)], progress)
         }
     })
 }
@@ -51,7 +52,7 @@ fn timed(
     case: &Case,
     input: &Input,
     engine: &Engine,
-    runs: u32,
+    [runs, on_cpu]: [u32; 2],
     progress: &Progress,
 ) -> Result<Row, Failure> {
     memory::require_picture(input.window(None)?, &[], 0)?;
@@ -61,7 +62,7 @@ fn timed(
     let plan = input.plan(&sets, None, progress)?;
     drop(sets);
     go_on()?;
-    let (mut built, builds) = build(engine, &plan, runs, progress)?;
+    let (mut built, builds, prepared) = build(engine, &plan, [runs, on_cpu], progress)?;
     let warm_up = built.built.frame(&plan, progress)?;
     let pixels = pixel_hash(&warm_up.film);
     let warm_up_ms = milliseconds(warm_up.wall);
@@ -97,6 +98,7 @@ fn timed(
         gpu_ms: (!times.gpu.is_empty()).then(|| Spread::of_milliseconds(times.gpu.clone())),
         build_ms: Spread::of(&builds),
         builds: builds.len() as u32,
+        cpu_preparation_ms: (!prepared.is_empty()).then(|| Spread::of(&prepared)),
         pipelines_ms,
         warm_up_ms: Some(warm_up_ms),
         paper_frames_per_second: case.paper_ms.map(|ms| 1e3 / ms),
@@ -136,27 +138,40 @@ struct LastBuilt {
 }
 
 /// Builds, and times it as often as frames while that takes no longer than [`BUILDING`]. The first build
-/// warms up: it counts only where there is no other.
+/// warms up: it counts only where there is no other. If `on_cpu` is not 0, as often as frames however long it
+/// takes, and in turn with the preparation of the same points on the CPU.
 fn build(
     engine: &Engine,
     plan: &Plan,
-    runs: u32,
+    [runs, on_cpu]: [u32; 2],
     progress: &Progress,
-) -> Result<(LastBuilt, Vec<Duration>), Failure> {
+) -> Result<(LastBuilt, Vec<Duration>, Vec<Duration>), Failure> {
     let started = Instant::now();
     let mut built = engine.build(plan, progress)?;
     let (first, first_pipelines) = (built.duration, built.pipelines);
-    let mut times = Vec::new();
-    while times.len() < runs as usize && started.elapsed() + built.duration < BUILDING {
+    let (mut times, mut prepared) = (Vec::new(), Vec::new());
+    let mut prepare = || {
+        let started = Instant::now();
+        if on_cpu != 0 {
+            let fits = reference::fit_surfaces::<f32>(plan, progress);
+            fits.ok_or_else(Failure::interrupted)?;
+            prepared.push(started.elapsed());
+        }
+        Ok::<_, Failure>(())
+    };
+    let in_time = |last: Duration| on_cpu != 0 || started.elapsed() + last < BUILDING;
+    while times.len() < runs as usize && in_time(built.duration) {
         // One at a time: two might not fit.
         drop(built);
+        prepare()?;
         built = engine.build(plan, progress)?;
         times.push(built.duration);
     }
     if times.is_empty() {
         times.push(first);
     }
-    Ok((LastBuilt { built, first_pipelines }, times))
+    progress.clear();
+    Ok((LastBuilt { built, first_pipelines }, times, prepared))
 }
 
 fn go_on() -> Result<(), Failure> {

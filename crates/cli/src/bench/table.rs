@@ -45,6 +45,7 @@ const DETAILS: &[Column] = &[
     ("max", |row| row.gpu_ms.map(|ms| short(ms.max))),
     ("build min", |row| Some(short(row.build_ms.min))),
     ("max", |row| Some(short(row.build_ms.max))),
+    ("on the CPU ms", |row| row.cpu_preparation_ms.map(|ms| short(ms.median))),
     ("builds", |row| Some(row.builds.to_string())),
     ("pipelines ms", |row| Some(short(row.pipelines_ms))),
     ("warm-up ms", |row| row.warm_up_ms.map(short)),

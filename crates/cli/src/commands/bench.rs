@@ -46,7 +46,7 @@ pub fn run(args: &BenchArgs) -> Result<Exit, Failure> {
         }
         for (case, number) in cases.cases.iter().zip(1..) {
             progress.task(&format!("{number}/{} {}", cases.cases.len(), case.name));
-            time(case, engine, &mut report, &progress)?;
+            time(case, engine, args.cpu_preparation, &mut report, &progress)?;
         }
         Ok(report)
     })?;
@@ -63,10 +63,11 @@ pub fn run(args: &BenchArgs) -> Result<Exit, Failure> {
 fn time(
     case: &Case,
     engine: &Engine,
+    on_cpu: bool,
     report: &mut Report,
     progress: &Progress,
 ) -> Result<(), Failure> {
-    match (measure(case, engine, report.runs, progress), &case.suite) {
+    match (measure(case, engine, report.runs, on_cpu, progress), &case.suite) {
         (Ok(row), _) => report.rows.push(row),
         (Err(Failure { exit: Exit::Exhausted, lines }), Some(suite)) => {
             let reason = format!("does not fit: {}", lines.join("; "));

@@ -51,6 +51,8 @@ fn one_render_writes_every_format_and_says_nothing_when_quiet() {
     assert_eq!(row["points"], 2000);
     assert_eq!(row["fits"]["full"], 2000);
     assert_eq!(row["passes"], 1);
+    assert_eq!(row["primary"], "grid", "few pixels");
+    assert!(row.get("loop").is_some(), "{row}");
     assert!(row["tests_per_ray"].as_f64().expect("a number") > 1.0, "{row}");
     assert!(row["bytes_per_point"].as_f64().expect("a number") > 64.0, "{row}");
     assert_eq!(row["pixels"].as_str().expect("a hash").len(), 16);

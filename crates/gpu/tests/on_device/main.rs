@@ -11,7 +11,7 @@ mod modules;
 
 use gpu::{
     Binding, Buffer, Device, DeviceChoice, GpuError, Image, ImageFormat, Instance, InstanceOptions,
-    Kernel, Recorder,
+    Kernel, Recorder, Texel,
 };
 use modules::{INPUT, OUTPUT};
 use std::sync::Arc;
@@ -171,7 +171,8 @@ fn images_ping_pong() {
 #[test]
 fn texel_buffers_have_the_modules_type() {
     on_device(|device| {
-        let bindings = [(INPUT, Binding::UniformTexelBuffer), (OUTPUT, Binding::StorageBuffer)];
+        let bindings =
+            [(INPUT, Binding::UniformTexelBuffer(Texel::Four)), (OUTPUT, Binding::StorageBuffer)];
         let kernel = Kernel::new(device, "fetch", &modules::fetch(), &bindings, 0).unwrap();
         // Bits that a float format could change: a signalling NaN and a subnormal.
         let bits = [0x7f80_0001, 0x0000_0001, 0xffff_ffff, 42];

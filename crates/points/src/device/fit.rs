@@ -1,12 +1,16 @@
 //! The pass `fit_polynomials`.
 
 use super::line;
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
-    FIT_NEIGHBORS, FIT_OUTCOMES, FIT_POINTS, FIT_POLYNOMIALS, FIT_RIMS, FIT_SIZES, FitParams,
+    FIT_NEIGHBORS, FIT_OUTCOMES, FIT_POINTS, FIT_POLYNOMIALS, FIT_RIMS, FIT_SIZES, FitOutcome,
+    FitParams, Polynomial,
 };
 use kernels::spirv;
 use std::sync::Arc;
+
+/// Neighbours that the faster kernel takes, at most.
+const FEW: u32 = 16;
 
 /// What the pass works on.
 pub(crate) struct FitPolynomialsIo<'a> {
@@ -22,34 +26,51 @@ pub(crate) struct FitPolynomialsIo<'a> {
 
 /// The local polynomial of each point of one batch (method, section 1).
 pub(crate) struct FitPolynomials {
-    kernel: Kernel,
+    /// For lists of up to 16, and for others.
+    kernels: [Kernel; 2],
 }
 
 impl FitPolynomials {
     pub const NAME: &'static str = "fit_polynomials";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, texels: bool) -> Result<Self, GpuError> {
+        let read =
+            if texels { Binding::UniformTexelBuffer(Texel::Four) } else { Binding::StorageBuffer };
         let bindings = [
-            (FIT_POINTS, Binding::StorageBuffer),
-            (FIT_NEIGHBORS, Binding::StorageBuffer),
+            (FIT_POINTS, read),
+            (FIT_NEIGHBORS, read),
             (FIT_POLYNOMIALS, Binding::StorageBuffer),
             (FIT_OUTCOMES, Binding::StorageBuffer),
             (FIT_SIZES, Binding::StorageBuffer),
             (FIT_RIMS, Binding::StorageBuffer),
         ];
-        let params = size_of::<FitParams>();
-        let kernel = Kernel::new(device, Self::NAME, &spirv::fit_polynomials(), &bindings, params)?;
-        Ok(Self { kernel })
+        let kernel = |module: &[u32]| {
+            Kernel::new(device, Self::NAME, module, &bindings, size_of::<FitParams>())
+        };
+        let few =
+            if texels { spirv::fit_polynomials_texels_few() } else { spirv::fit_polynomials() };
+        let many = if texels { spirv::fit_polynomials_texels() } else { spirv::fit_polynomials() };
+        Ok(Self { kernels: [kernel(&few)?, kernel(&many)?] })
     }
 
     /// Records one batch.
     pub fn record(&self, rec: &mut Recorder, io: FitPolynomialsIo<'_>, params: &FitParams) {
-        rec.pass(Self::NAME, &self.kernel)
+        // Of a large scene, the buffers by slot are longer than a binding.
+        let slots = [params.bound_from, params.first_slot + params.point_count];
+        let part = |stride: usize| {
+            let [first, end] = slots.map(|slot| u64::from(slot) * stride as u64);
+            [first, end - first]
+        };
+        let polynomials = part(size_of::<Polynomial>());
+        let outcomes = part(size_of::<FitOutcome>());
+        let sizes =
+            if params.feature_size < 0.0 { part(size_of::<f32>()) } else { [0, io.sizes.bytes()] };
+        rec.pass(Self::NAME, &self.kernels[usize::from(params.neighbors > FEW)])
             .buffer(FIT_POINTS, io.points)
             .buffer(FIT_NEIGHBORS, io.neighbors)
-            .buffer(FIT_POLYNOMIALS, io.polynomials)
-            .buffer(FIT_OUTCOMES, io.outcomes)
-            .buffer(FIT_SIZES, io.sizes)
+            .buffer_part(FIT_POLYNOMIALS, io.polynomials, polynomials[0], polynomials[1])
+            .buffer_part(FIT_OUTCOMES, io.outcomes, outcomes[0], outcomes[1])
+            .buffer_part(FIT_SIZES, io.sizes, sizes[0], sizes[1])
             .buffer(FIT_RIMS, io.rims)
             .push(params)
             .dispatch(line(params.point_count));

@@ -1,16 +1,21 @@
 //! The uniform grid: count, scan, emit, sort, ranges (\[T\] §5).
+//!
+//! Pairs of cell and point are sorted slab by slab, some layers of cells along z at a time, so that no buffer
+//! but the finished list grows with the scene. Slabs follow each other as their cells do: any number of them
+//! gives the same list.
 
+use super::work::Work;
 use super::{
     PointCells, line,
     scan::Scan,
     sort::{Pairs, Sort, SortSpace},
 };
 use crate::BALL_MARGIN;
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Texel};
 use kernels::layout::{
-    GRID_CELLS, GRID_INFO, GRID_KEYS, GRID_OFFSETS, GRID_ORDER, GRID_POLYNOMIALS, GRID_SLOTS,
-    GridInfo, GridParams, ListedPoint, OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT, OFFSETS_POINTS,
-    OFFSETS_POLYNOMIALS, OFFSETS_SLOTS,
+    GRID_CELLS, GRID_INFO, GRID_KEYS, GRID_LARGE, GRID_OFFSETS, GRID_ORDER, GRID_POLYNOMIALS,
+    GRID_SLOTS, GridInfo, GridParams, ListedPoint, OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT,
+    OFFSETS_POINTS, OFFSETS_POLYNOMIALS, OFFSETS_SLOTS,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -22,6 +27,29 @@ pub(crate) struct GridBuildIo<'a> {
     pub polynomials: &'a Buffer,
     /// Slots by ordinal.
     pub order: &'a [u32],
+    /// Whether any ball may meet so many cells that its pairs are emitted one by one.
+    pub any_large: bool,
+}
+
+/// Pairs of one slab, at most, unless it is a single layer: 170 MB to sort them in.
+const SLAB_PAIRS: u32 = 7_000_000;
+
+/// What all slabs of a build share.
+struct Counting {
+    order: Buffer,
+    offsets: Buffer,
+    /// Of large balls alone; one word where there are none.
+    large_offsets: Buffer,
+    levels: Vec<Buffer>,
+}
+
+/// Some layers of the grid, with the pairs of all and of large balls alone.
+#[derive(Debug, Clone, Copy)]
+struct Slab {
+    first_layer: u32,
+    end_layer: u32,
+    pairs: u32,
+    large_pairs: u32,
 }
 
 /// The points of each cell.
@@ -34,6 +62,7 @@ pub(crate) struct GridBuild {
     device: Arc<Device>,
     count: Kernel,
     emit: Kernel,
+    emit_large: Kernel,
     ranges: Kernel,
     offsets: Kernel,
     list_points: Kernel,
@@ -42,120 +71,285 @@ pub(crate) struct GridBuild {
 }
 
 impl GridBuild {
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
-        let kernel = |name, module: &[u32], used: &[u32]| {
-            let bindings: Vec<(u32, Binding)> =
-                used.iter().map(|&binding| (binding, Binding::StorageBuffer)).collect();
-            Kernel::new(device, name, module, &bindings, size_of::<GridParams>())
+    /// `texels`: polynomials are read through a texel buffer.
+    pub fn new(device: &Arc<Device>, texels: bool) -> Result<Self, GpuError> {
+        let kernel = |name, modules: [fn() -> Vec<u32>; 2], used: &[u32]| {
+            let bindings: Vec<(u32, Binding)> = used
+                .iter()
+                .map(|&at| match (at, texels) {
+                    (GRID_POLYNOMIALS, true) => (at, Binding::UniformTexelBuffer(Texel::Four)),
+                    _ => (at, Binding::StorageBuffer),
+                })
+                .collect();
+            let module = modules[usize::from(texels)]();
+            Kernel::new(device, name, &module, &bindings, size_of::<GridParams>())
         };
-        let counted = [GRID_INFO, GRID_POLYNOMIALS, GRID_ORDER, GRID_OFFSETS];
+        let counted = [GRID_INFO, GRID_POLYNOMIALS, GRID_ORDER, GRID_OFFSETS, GRID_LARGE];
         let emitted =
             [GRID_INFO, GRID_POLYNOMIALS, GRID_ORDER, GRID_OFFSETS, GRID_KEYS, GRID_SLOTS];
+        let large = [&emitted[..], &[GRID_LARGE]].concat();
         let ranged = [GRID_INFO, GRID_KEYS, GRID_CELLS];
-        let offset = [OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT];
-        let listed = [OFFSETS_SLOTS, OFFSETS_POLYNOMIALS, OFFSETS_POINTS];
         Ok(Self {
             device: Arc::clone(device),
-            count: kernel("grid_count", &spirv::grid_count(), &counted)?,
-            emit: kernel("grid_emit", &spirv::grid_emit(), &emitted)?,
-            ranges: kernel("grid_ranges", &spirv::grid_ranges(), &ranged)?,
-            offsets: kernel("cell_offsets", &spirv::cell_offsets(), &offset)?,
-            list_points: kernel("list_points", &spirv::list_points(), &listed)?,
+            count: kernel("grid_count", [spirv::grid_count, spirv::grid_count_texels], &counted)?,
+            emit: kernel("grid_emit", [spirv::grid_emit, spirv::grid_emit_texels], &emitted)?,
+            emit_large: kernel(
+                "grid_emit_large",
+                [spirv::grid_emit_large, spirv::grid_emit_large_texels],
+                &large,
+            )?,
+            ranges: kernel("grid_ranges", [spirv::grid_ranges, spirv::grid_ranges], &ranged)?,
+            offsets: Self::listing(
+                device,
+                "cell_offsets",
+                &spirv::cell_offsets(),
+                &[OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT].map(|at| (at, Binding::StorageBuffer)),
+            )?,
+            list_points: Self::listing(
+                device,
+                "list_points",
+                &if texels { spirv::list_points_texels() } else { spirv::list_points() },
+                &[
+                    (OFFSETS_SLOTS, Binding::StorageBuffer),
+                    (OFFSETS_POINTS, Binding::StorageBuffer),
+                    (
+                        OFFSETS_POLYNOMIALS,
+                        if texels {
+                            Binding::UniformTexelBuffer(Texel::Four)
+                        } else {
+                            Binding::StorageBuffer
+                        },
+                    ),
+                ],
+            )?,
             scan: Scan::new(device)?,
             sort: Sort::new(device)?,
         })
     }
 
+    fn listing(
+        device: &Arc<Device>,
+        name: &'static str,
+        module: &[u32],
+        bindings: &[(u32, Binding)],
+    ) -> Result<Kernel, GpuError> {
+        Kernel::new(device, name, module, bindings, size_of::<GridParams>())
+    }
+
     /// Lists the points whose trust ball meets each cell, in the order of `order` (slots by ordinal).
-    pub fn run(&self, io: &GridBuildIo<'_>) -> Result<GridLists, GpuError> {
-        let mut rec = Recorder::new(&self.device)?;
+    pub fn run(&self, rec: &mut Work, io: &GridBuildIo<'_>) -> Result<GridLists, GpuError> {
+        let device = &self.device;
         let bytes = u64::from(io.grid.cell_count()) * 8;
-        let cells = Buffer::new(&self.device, "cells", bytes)?;
+        let cells = Buffer::paged(device, "cells", bytes)?;
         rec.fill(&cells, 0, bytes, 0);
-        let Some((pairs, params)) = self.sorted_pairs(&mut rec, io, BALL_MARGIN)? else {
+        let counting = self.counting(io)?;
+        let whole = self.count(rec, io, &counting, [0, io.grid.resolution[2]], BALL_MARGIN)?;
+        if whole.is_sorted_at_once() {
+            if whole.pairs == 0 {
+                rec.submit()?;
+                return Ok(GridLists { cells, slots: Buffer::new(device, "cell slots", 16)? });
+            }
+            let pairs = self.sorted_pairs(rec, io, &counting, &whole, BALL_MARGIN)?;
+            self.record_ranges(rec, io, &pairs, &whole, 0, &cells);
             rec.submit()?;
-            return Ok(GridLists { cells, slots: Buffer::new(&self.device, "cell slots", 4)? });
-        };
-        rec.pass("grid_ranges", &self.ranges)
-            .buffer(GRID_INFO, io.grid_info)
-            .buffer(GRID_KEYS, &pairs.keys)
-            .buffer(GRID_CELLS, &cells)
-            .push(&params)
-            .dispatch(line(params.pair_count));
-        rec.submit()?;
-        Ok(GridLists { cells, slots: pairs.slots })
+            return Ok(GridLists { cells, slots: pairs.slots });
+        }
+        let slots =
+            Buffer::paged(device, "cell slots", u64::from(whole.pairs).next_multiple_of(4) * 4)?;
+        // Slots are read four at a time, also behind the last.
+        let end = u64::from(whole.pairs) * 4;
+        if slots.bytes() > end {
+            rec.fill(&slots, end, slots.bytes() - end, 0);
+        }
+        let mut first_pair = 0;
+        let mut left = whole.parts();
+        while let Some(layers) = left.pop() {
+            let slab = self.count(rec, io, &counting, layers, BALL_MARGIN)?;
+            if !slab.is_sorted_at_once() {
+                left.extend(slab.parts());
+            } else if slab.pairs > 0 {
+                let pairs = self.sorted_pairs(rec, io, &counting, &slab, BALL_MARGIN)?;
+                self.record_ranges(rec, io, &pairs, &slab, first_pair, &cells);
+                let bytes = u64::from(slab.pairs) * 4;
+                rec.copy(&pairs.slots, 0, &slots, u64::from(first_pair) * 4, bytes);
+                rec.submit()?;
+                first_pair += slab.pairs;
+            }
+        }
+        Ok(GridLists { cells, slots })
     }
 
     /// Lists the points that carry a surface by the cell they lie in, in the order of `order`.
-    pub fn list_points(&self, io: &GridBuildIo<'_>) -> Result<Option<PointCells>, GpuError> {
-        let mut rec = Recorder::new(&self.device)?;
-        let Some((pairs, params)) = self.sorted_pairs(&mut rec, io, 0.0)? else {
+    pub fn list_points(
+        &self,
+        rec: &mut Work,
+        io: &GridBuildIo<'_>,
+    ) -> Result<Option<PointCells>, GpuError> {
+        let device = &self.device;
+        let counting = self.counting(io)?;
+        let layers = [0, io.grid.resolution[2]];
+        let whole = self.count(rec, io, &counting, layers, 0.0)?;
+        if whole.pairs == 0 {
             return Ok(None);
-        };
+        }
+        let pairs = self.sorted_pairs(rec, io, &counting, &whole, 0.0)?;
+        let params = whole.params(io, 0.0);
         let entries = io.grid.cell_count() + 1;
-        let offsets = Buffer::new(&self.device, "point cell offsets", u64::from(entries) * 4)?;
+        let offsets = Buffer::new(device, "point cell offsets", u64::from(entries) * 4)?;
         rec.pass("cell_offsets", &self.offsets)
             .buffer(OFFSETS_INFO, io.grid_info)
             .buffer(OFFSETS_KEYS, &pairs.keys)
             .buffer(OFFSETS_OUT, &offsets)
             .push(&params)
             .dispatch(line(entries));
-        let bytes = u64::from(params.pair_count) * size_of::<ListedPoint>() as u64;
-        let points = Buffer::new(&self.device, "listed points", bytes)?;
+        let bytes = u64::from(whole.pairs) * size_of::<ListedPoint>() as u64;
+        let points = Buffer::new(device, "listed points", bytes)?;
         rec.pass("list_points", &self.list_points)
             .buffer(OFFSETS_SLOTS, &pairs.slots)
             .buffer(OFFSETS_POLYNOMIALS, io.polynomials)
             .buffer(OFFSETS_POINTS, &points)
             .push(&params)
-            .dispatch(line(params.pair_count));
+            .dispatch(line(whole.pairs));
         rec.submit()?;
         Ok(Some(PointCells { offsets, points }))
     }
 
-    /// Pairs of cell and point, sorted by cell; the sort is recorded and not yet submitted. `None`
-    /// where there is no pair.
-    fn sorted_pairs(
-        &self,
-        rec: &mut Recorder,
-        io: &GridBuildIo<'_>,
-        ball_scale: f32,
-    ) -> Result<Option<(Pairs, GridParams)>, GpuError> {
+    fn counting(&self, io: &GridBuildIo<'_>) -> Result<Counting, GpuError> {
         let device = &self.device;
-        let point_count = io.order.len() as u32;
-        let order = Buffer::from_slice(device, "point order", io.order)?;
-        let offsets = Buffer::new(device, "pair offsets", (u64::from(point_count) + 1) * 4)?;
-        let levels = Scan::levels(device, point_count + 1)?;
-        let params = GridParams { point_count, pair_count: 0, ball_scale };
-        rec.fill(&offsets, u64::from(point_count) * 4, 4, 0);
+        let bytes = (io.order.len() as u64 + 1) * 4;
+        Ok(Counting {
+            order: Buffer::from_slice(device, "point order", io.order)?,
+            offsets: Buffer::new(device, "pair offsets", bytes)?,
+            large_offsets: Buffer::new(
+                device,
+                "large pair offsets",
+                if io.any_large { bytes } else { 4 },
+            )?,
+            levels: Scan::levels(device, io.order.len() as u32 + 1)?,
+        })
+    }
+
+    /// Counts the pairs of some layers, and leaves the offsets of each point's.
+    fn count(
+        &self,
+        rec: &mut Work,
+        io: &GridBuildIo<'_>,
+        counting: &Counting,
+        [first_layer, end_layer]: [u32; 2],
+        ball_scale: f32,
+    ) -> Result<Slab, GpuError> {
+        let points = io.order.len() as u32;
+        let slab = Slab { first_layer, end_layer, pairs: 0, large_pairs: 0 };
+        let Counting { order, offsets, large_offsets, levels } = counting;
+        let end = u64::from(points) * 4;
+        rec.fill(offsets, end, 4, 0);
+        if io.any_large {
+            rec.fill(large_offsets, end, 4, 0);
+        }
         rec.pass("grid_count", &self.count)
             .buffer(GRID_INFO, io.grid_info)
             .buffer(GRID_POLYNOMIALS, io.polynomials)
-            .buffer(GRID_ORDER, &order)
-            .buffer(GRID_OFFSETS, &offsets)
-            .push(&params)
-            .dispatch(line(point_count));
-        self.scan.record(rec, &offsets, point_count + 1, &levels);
-        rec.submit()?;
-        let mut total = [0u32];
-        offsets.read(u64::from(point_count) * 4, &mut total)?;
-        let [pair_count] = total;
-        if pair_count == 0 {
-            return Ok(None);
+            .buffer(GRID_ORDER, order)
+            .buffer(GRID_OFFSETS, offsets)
+            .buffer(GRID_LARGE, large_offsets)
+            .push(&slab.params(io, ball_scale))
+            .dispatch(line(points));
+        self.scan.record(rec, offsets, points + 1, levels);
+        if io.any_large {
+            self.scan.record(rec, large_offsets, points + 1, levels);
         }
-        let params = GridParams { pair_count, ..params };
-        let mut pairs = Pairs::new(device, pair_count)?;
-        let mut space = SortSpace::new(device, pair_count)?;
+        rec.submit()?;
+        let mut totals = [[0u32]; 2];
+        offsets.read(end, &mut totals[0])?;
+        if io.any_large {
+            large_offsets.read(end, &mut totals[1])?;
+        }
+        let [[pairs], [large_pairs]] = totals;
+        Ok(Slab { pairs, large_pairs, ..slab })
+    }
+
+    /// Pairs of cell and point of a slab that was counted last, sorted by cell. The sort is recorded and not
+    /// yet submitted.
+    fn sorted_pairs(
+        &self,
+        rec: &mut Work,
+        io: &GridBuildIo<'_>,
+        counting: &Counting,
+        slab: &Slab,
+        ball_scale: f32,
+    ) -> Result<Pairs, GpuError> {
+        let device = &self.device;
+        let mut pairs = Pairs::new(device, slab.pairs)?;
+        let mut space = SortSpace::new(device, slab.pairs)?;
+        let params = slab.params(io, ball_scale);
         rec.pass("grid_emit", &self.emit)
             .buffer(GRID_INFO, io.grid_info)
             .buffer(GRID_POLYNOMIALS, io.polynomials)
-            .buffer(GRID_ORDER, &order)
-            .buffer(GRID_OFFSETS, &offsets)
+            .buffer(GRID_ORDER, &counting.order)
+            .buffer(GRID_OFFSETS, &counting.offsets)
             .buffer(GRID_KEYS, &pairs.keys)
             .buffer(GRID_SLOTS, &pairs.slots)
             .push(&params)
-            .dispatch(line(pair_count));
-        let largest = io.grid.cell_count();
-        self.sort.record(rec, &self.scan, &mut pairs, &mut space, pair_count, largest);
-        Ok(Some((pairs, params)))
+            .dispatch(line(params.point_count));
+        if slab.large_pairs > 0 {
+            rec.pass("grid_emit_large", &self.emit_large)
+                .buffer(GRID_INFO, io.grid_info)
+                .buffer(GRID_POLYNOMIALS, io.polynomials)
+                .buffer(GRID_ORDER, &counting.order)
+                .buffer(GRID_OFFSETS, &counting.offsets)
+                .buffer(GRID_LARGE, &counting.large_offsets)
+                .buffer(GRID_KEYS, &pairs.keys)
+                .buffer(GRID_SLOTS, &pairs.slots)
+                .push(&GridParams { pair_count: slab.large_pairs, ..params })
+                .dispatch(line(slab.large_pairs));
+        }
+        let [x, y, _] = io.grid.resolution;
+        let largest = x * y * (slab.end_layer - slab.first_layer);
+        self.sort.record(rec, &self.scan, &mut pairs, &mut space, slab.pairs, largest);
+        Ok(pairs)
+    }
+
+    fn record_ranges(
+        &self,
+        rec: &mut Work,
+        io: &GridBuildIo<'_>,
+        pairs: &Pairs,
+        slab: &Slab,
+        first_pair: u32,
+        cells: &Buffer,
+    ) {
+        rec.pass("grid_ranges", &self.ranges)
+            .buffer(GRID_INFO, io.grid_info)
+            .buffer(GRID_KEYS, &pairs.keys)
+            .buffer(GRID_CELLS, cells)
+            .push(&GridParams { first_pair, ..slab.params(io, BALL_MARGIN) })
+            .dispatch(line(slab.pairs));
+    }
+}
+
+impl Slab {
+    fn is_sorted_at_once(&self) -> bool {
+        self.pairs <= SLAB_PAIRS || self.end_layer - self.first_layer == 1
+    }
+
+    /// Its layers in parts that are likely to be small enough, the lowest last.
+    fn parts(&self) -> Vec<[u32; 2]> {
+        let Self { first_layer: first, end_layer: end, pairs, .. } = *self;
+        let parts = pairs.div_ceil(SLAB_PAIRS).max(2);
+        let layers = (end - first).div_ceil(parts);
+        let starts = (first..end).step_by(layers as usize);
+        starts.rev().map(|start| [start, end.min(start + layers)]).collect()
+    }
+
+    fn params(&self, io: &GridBuildIo<'_>, ball_scale: f32) -> GridParams {
+        GridParams {
+            point_count: io.order.len() as u32,
+            pair_count: self.pairs,
+            ball_scale,
+            first_layer: self.first_layer,
+            end_layer: self.end_layer,
+            first_pair: 0,
+            any_large: u32::from(io.any_large),
+        }
     }
 }

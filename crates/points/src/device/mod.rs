@@ -5,22 +5,26 @@
 
 mod clip;
 mod fit;
+mod fitting;
 mod grid_build;
 mod scan;
+mod search;
+mod skip;
+mod smooth;
 mod sort;
+mod work;
 
+pub use fitting::nearest_others;
 pub use scan::Scan;
 pub use sort::{Pairs, Sort, SortSpace};
 
-use crate::{Cloud, NeighborSearch, Rims, Watch, plan_grid};
-use fit::FitPolynomials;
-use gpu::{Buffer, Device, GpuError, Recorder};
+use crate::{Cloud, Watch, plan_grid};
+use fitting::{Fitted, fit_all};
+use gpu::{Buffer, Device, GpuError};
 use grid_build::{GridBuild, GridBuildIo};
-use kernels::layout::{FitOutcome, FitParams, GridInfo, LINE_ROW, Polynomial, Rim};
+use kernels::layout::{FitOutcome, FitParams, GridInfo, LINE_ROW, Polynomial};
 use std::sync::Arc;
-
-/// Points whose neighbours are listed and fitted in one go: 8 MiB of lists at k = 16.
-const FIT_BATCH: usize = 1 << 17;
+use work::Work;
 
 /// What a renderer traces.
 #[derive(Debug)]
@@ -29,7 +33,7 @@ pub struct Surfaces {
     pub polynomials: Buffer,
     /// How each fit ended, by slot.
     pub outcomes: Vec<FitOutcome>,
-    /// The same, for kernels.
+    /// The same, for kernels, where hits are refined.
     pub outcome_buffer: Buffer,
     /// Where the grid lies.
     pub grid: GridInfo,
@@ -41,6 +45,10 @@ pub struct Surfaces {
     pub slots: Buffer,
     /// Each point in its own cell alone; only where hits are refined and any point carries a surface.
     pub point_cells: Option<PointCells>,
+    /// Points whose neighbours were found on the host, since the search on the device is bounded.
+    pub searched_on_host: u64,
+    /// Milliseconds of each kernel of the build by the device's clock, in the order of first use.
+    pub kernels: Vec<(&'static str, f64)>,
 }
 
 /// The points of each cell, each point once.
@@ -60,9 +68,61 @@ pub enum BuildError {
     /// The device refused or failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// More points than the device has memory for.
+    #[error(
+        "{points} points need {peak} bytes of the device's memory while they are built and {kept} after \
+         that, but it has {heap}: thin the point sets to about {fitting} points, or render with --device \
+         reference"
+    )]
+    Memory {
+        /// Points that carry a surface.
+        points: u64,
+        /// Bytes while the grid is built.
+        peak: u64,
+        /// Bytes that tracing needs.
+        kept: u64,
+        /// Bytes of the device's heap.
+        heap: u64,
+        /// About how many points would fit.
+        fitting: u64,
+    },
     /// The watcher asked for an end.
     #[error("interrupted")]
     Interrupted,
+}
+
+/// Bytes of a device's memory that a build takes, by a lower estimate: what does not fit could not have been
+/// finished.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Memory {
+    points: u64,
+    refines: bool,
+}
+
+impl Memory {
+    fn of(points: u64, refines: bool) -> Self {
+        Self { points, refines }
+    }
+
+    /// What tracing needs: polynomials, and of the grid a cell and two entries of its list a point.
+    fn kept(self) -> u64 {
+        let refinement = if self.refines { size_of::<FitOutcome>() + 16 } else { 0 };
+        self.points * (size_of::<Polynomial>() + 16 + refinement) as u64
+    }
+
+    /// Beside that, while fitting, the points; while the grid is built, their order and their pairs.
+    fn peak(self) -> u64 {
+        self.kept() + self.points * 16
+    }
+
+    fn require(self, heap: u64) -> Result<(), BuildError> {
+        let (points, peak, kept) = (self.points, self.peak(), self.kept());
+        if peak <= heap || points == 0 {
+            return Ok(());
+        }
+        let fitting = heap / (peak / points);
+        Err(BuildError::Memory { points, peak, kept, heap, fitting })
+    }
 }
 
 impl Surfaces {
@@ -82,25 +142,38 @@ impl Surfaces {
         stand_ins: &[Polynomial],
         watch: &dyn Watch,
     ) -> Result<Self, BuildError> {
+        Memory::of(cloud.points.len() as u64, refines).require(device.limits().heap_bytes)?;
+        let mut work = Work::new(device)?;
         let fitted = (cloud.points.len() * size_of::<Polynomial>()) as u64;
         let bytes = fitted + size_of_val(stand_ins) as u64;
-        let polynomials = Buffer::new(device, "polynomials", bytes)?;
+        let polynomials = Buffer::paged(device, "polynomials", bytes)?;
         polynomials.write(fitted, stand_ins)?;
-        let (outcomes, outcome_buffer, rims) = fit_all(device, cloud, fits, &polynomials, watch)?;
+        let Fitted { outcomes, outcome_buffer, rims, searched_on_host } =
+            fit_all(device, cloud, fits, &polynomials, &mut work, watch)?;
+        // Refinement alone reads them on the device.
+        let outcome_buffer = match refines {
+            true => outcome_buffer,
+            false => Buffer::new(device, "fit outcomes", size_of::<FitOutcome>() as u64)?,
+        };
         watch.stage("building the grid", 1);
         let grid = plan_grid(&cloud.points, &outcomes, resolution);
         let grid_info = Buffer::from_slice(device, "grid info", &[grid])?;
-        let build = GridBuild::new(device)?;
+        let texels = bytes / 16 <= u64::from(device.limits().max_texel_buffer_elements);
+        let build = GridBuild::new(device, texels)?;
+        let widest = outcomes.iter().map(|outcome| outcome.trust).fold(0.0, f32::max);
         let io = GridBuildIo {
             grid: &grid,
             grid_info: &grid_info,
             polynomials: &polynomials,
             order: &cloud.order,
+            // Others are no wider than two cells, and touch four along each axis at most.
+            any_large: widest > 0.99 * grid.edge,
         };
         // Refinement asks for the points, the grid for their balls: those move at rims.
-        let point_cells = if refines { build.list_points(&io)? } else { None };
-        clip::clip_balls(device, &polynomials, &rims.clips(&cloud.points, &outcomes))?;
-        let lists = build.run(&io)?;
+        let point_cells = if refines { build.list_points(&mut work, &io)? } else { None };
+        clip::clip_balls(device, &mut work, &polynomials, &rims.clips(&cloud.points, &outcomes))?;
+        let lists = build.run(&mut work, &io)?;
+        skip::skip_cells(device, &mut work, &grid, &grid_info, &lists.cells)?;
         watch.done(1);
         Ok(Self {
             polynomials,
@@ -111,6 +184,8 @@ impl Surfaces {
             cells: lists.cells,
             slots: lists.slots,
             point_cells,
+            searched_on_host,
+            kernels: work.kernels,
         })
     }
 
@@ -125,71 +200,26 @@ impl Surfaces {
     }
 }
 
-/// Fits batch after batch, outcomes on the host and on the device, so that lists of neighbours never fill memory;
-/// with the rims.
-fn fit_all(
-    device: &Arc<Device>,
-    cloud: &Cloud,
-    fits: &[FitParams],
-    polynomials: &Buffer,
-    watch: &dyn Watch,
-) -> Result<(Vec<FitOutcome>, Buffer, Rims), BuildError> {
-    let count = cloud.points.len();
-    let points = Buffer::from_slice(device, "points", &cloud.points)?;
-    let outcomes = Buffer::new(device, "fit outcomes", (count * size_of::<FitOutcome>()) as u64)?;
-    let smoothed = fits.iter().any(|fit| fit.feature_size < 0.0);
-    let sizes = Buffer::new(device, "feature sizes", if smoothed { count as u64 * 4 } else { 4 })?;
-    let finds_rims = fits.iter().any(|fit| fit.rim_limit > 0.0);
-    let most_rims = if finds_rims { count.min(FIT_BATCH) } else { 1 };
-    let rim_buffer = Buffer::new(device, "rims", (most_rims * size_of::<Rim>()) as u64)?;
-    let mut rims = Rims::default();
-    let pass = FitPolynomials::new(device)?;
-    let mut recorder = Recorder::new(device)?;
-    watch.stage("fitting surfaces", count as u64);
-    let mut done = 0;
-    for (object, fit) in cloud.objects.iter().zip(fits) {
-        let range = object.range();
-        let search = NeighborSearch::new(&cloud.points[range.clone()], object.first_slot);
-        if fit.feature_size < 0.0 {
-            let smoothed = search.smoothed_sizes(fit.neighbors as usize);
-            sizes.write(u64::from(object.first_slot) * 4, &smoothed)?;
-        }
-        for first in (0..range.len()).step_by(FIT_BATCH) {
-            if watch.interrupted() {
-                return Err(BuildError::Interrupted);
-            }
-            let batch = first..range.len().min(first + FIT_BATCH);
-            let lists = search.nearest(batch.clone(), fit.neighbors as usize);
-            let neighbors = Buffer::from_slice(device, "neighbors", &lists)?;
-            let first_slot = object.first_slot + first as u32;
-            let point_count = batch.len() as u32;
-            let params = FitParams { first_slot, point_count, first_listed: first_slot, ..*fit };
-            let io = fit::FitPolynomialsIo {
-                points: &points,
-                neighbors: &neighbors,
-                polynomials,
-                outcomes: &outcomes,
-                sizes: &sizes,
-                rims: &rim_buffer,
-            };
-            pass.record(&mut recorder, io, &params);
-            recorder.submit()?;
-            if fit.rim_limit > 0.0 {
-                let mut found = vec![Rim::default(); batch.len()];
-                rim_buffer.read(0, &mut found)?;
-                rims.add(first_slot, &found, &lists);
-            }
-            done += batch.len() as u64;
-            watch.done(done);
-        }
-    }
-    let mut read = vec![FitOutcome { trust: 0.0, kind: 0, feature_size: 0.0 }; count];
-    outcomes.read(0, &mut read)?;
-    Ok((read, outcomes, rims))
-}
-
 /// Invocations for a list of `count` entries: over rows where one axis would be too short.
 #[must_use]
 pub fn line(count: u32) -> [u32; 3] {
     [count.min(LINE_ROW), count.div_ceil(LINE_ROW), 1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_points_than_memory_are_refused_with_how_many_would_fit() {
+        let heap = 2 << 30;
+        assert!(Memory::of(0, true).require(0).is_ok());
+        assert!(Memory::of(10_000_000, false).require(heap).is_ok());
+        let Err(error) = Memory::of(100_000_000, false).require(heap) else {
+            unreachable!("6.4 GB of polynomials alone")
+        };
+        let BuildError::Memory { fitting, .. } = error else { unreachable!("{error}") };
+        assert!(Memory::of(fitting, false).require(heap).is_ok());
+        assert!(Memory::of(fitting + fitting / 50, false).require(heap).is_err());
+    }
 }

@@ -27,7 +27,7 @@ impl Pairs {
     pub fn new(device: &Arc<Device>, count: u32) -> Result<Self, GpuError> {
         Ok(Self {
             keys: Buffer::new(device, "pair keys", u64::from(count) * 4)?,
-            slots: Buffer::new(device, "pair slots", u64::from(count) * 4)?,
+            slots: Buffer::new(device, "pair slots", u64::from(count).next_multiple_of(4) * 4)?,
         })
     }
 }
@@ -90,10 +90,21 @@ impl Sort {
         largest: u32,
     ) {
         let runs = count.div_ceil(RUN_LENGTH);
-        let entries = runs << DIGIT_BITS;
+        // As few rounds as digits of DIGIT_BITS need, and digits no wider than these rounds do.
+        let key_bits = (u32::BITS - largest.leading_zeros()).max(1);
+        let bits = key_bits.div_ceil(key_bits.div_ceil(DIGIT_BITS));
+        let entries = runs << bits;
         let SortSpace { spare, histogram, levels } = space;
-        for shift in (0..u32::BITS - largest.leading_zeros()).step_by(DIGIT_BITS as usize) {
-            let params = SortParams { count, shift, runs };
+        // Slots are read four at a time, also behind the last.
+        let end = u64::from(count) * 4;
+        for slots in [&pairs.slots, &spare.slots] {
+            let rest = end.next_multiple_of(16).min(slots.bytes()) - end;
+            if rest > 0 {
+                rec.fill(slots, end, rest, 0);
+            }
+        }
+        for shift in (0..key_bits).step_by(bits as usize) {
+            let params = SortParams { count, shift, runs, bits };
             rec.fill(histogram, 0, u64::from(entries) * 4, 0);
             rec.pass("sort_count", &self.count)
                 .buffer(SORT_KEYS_IN, &pairs.keys)

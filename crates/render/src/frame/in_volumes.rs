@@ -1,7 +1,8 @@
 //! What volumes do to the rays of a frame.
 
-use super::{FrameStats, Renderer, Traced, WORK_PER_PASS};
+use super::{FrameStats, Renderer, Traced};
 use crate::RenderError;
+use crate::budget::Budget;
 use crate::passes::{IsosurfaceIo, MarchIo, Marched, PointLightIo, Searching};
 use kernels::layout::{self, MarchParams, PointLightParams, VOLUME_EMITS};
 use plan::Plan;
@@ -34,7 +35,6 @@ impl Renderer {
                 },
             },
         };
-        let params = march_params(plan, ray_count);
         let bytes = |size: usize| u64::from(ray_count) * size as u64;
         self.recorder.fill(&volumes.marches, 0, bytes(size_of::<layout::March>()), 0);
         if lights.is_some() {
@@ -47,9 +47,12 @@ impl Renderer {
                 return Err(RenderError::Interrupted);
             }
             self.recorder.fill(&self.live, 0, 4, 0);
+            let params = march_params(plan, ray_count, self.budget);
             self.passes.march.record(&mut self.recorder, io, &params);
-            stats.add_kernels(&self.recorder.submit()?.passes);
+            let passes = self.recorder.submit()?.passes;
+            stats.add_kernels(&passes);
             self.live.read(0, &mut left)?;
+            self.budget.passed(passes.iter().map(|pass| pass.1).sum(), left != [0]);
         }
         Ok(())
     }
@@ -76,7 +79,6 @@ impl Renderer {
                 true => Searching::Shadows { light_sums: self.wave.light_sums() },
             },
         };
-        let params = march_params(plan, ray_count);
         let bytes = u64::from(ray_count) * size_of::<layout::IsoSearch>() as u64;
         self.recorder.fill(&volumes.searches, 0, bytes, 0);
         let mut left = [u32::MAX];
@@ -85,9 +87,12 @@ impl Renderer {
                 return Err(RenderError::Interrupted);
             }
             self.recorder.fill(&self.live, 0, 4, 0);
+            let params = march_params(plan, ray_count, self.budget);
             self.passes.isosurface.record(&mut self.recorder, io, &params);
-            stats.add_kernels(&self.recorder.submit()?.passes);
+            let passes = self.recorder.submit()?.passes;
+            stats.add_kernels(&passes);
             self.live.read(0, &mut left)?;
+            self.budget.passed(passes.iter().map(|pass| pass.1).sum(), left != [0]);
         }
         Ok(())
     }
@@ -153,12 +158,12 @@ impl Renderer {
     }
 }
 
-fn march_params(plan: &Plan, ray_count: u32) -> MarchParams {
+fn march_params(plan: &Plan, ray_count: u32, budget: Budget) -> MarchParams {
     MarchParams {
         ray_count,
         volume_count: plan.volumes.infos.len() as u32,
         step: plan.volumes.step,
-        work: WORK_PER_PASS / 2, // two loops a sample
+        work: budget.work() / 2, // two loops a sample
         light_count: plan.lights.len() as u32,
     }
 }

@@ -1,6 +1,8 @@
 //! What `albedo.glsl` and `environment.glsl` read, for every pass whose kernel includes them.
 
-use gpu::{Binding, Buffer, PassBuilder};
+use super::surface_lists;
+use crate::state::RayLoop;
+use gpu::{Binding, Buffer, PassBuilder, Texel};
 use kernels::layout::{
     SHADE_COLORS, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, TRACE_CELLS, TRACE_INFO,
     TRACE_POLYNOMIALS, TRACE_SLOTS,
@@ -19,16 +21,12 @@ pub(crate) struct AlbedoIo<'a> {
 
 impl AlbedoIo<'_> {
     /// Of the kernel.
-    pub const BINDINGS: [(u32, Binding); 8] = [
-        (TRACE_INFO, Binding::StorageBuffer),
-        (TRACE_CELLS, Binding::StorageBuffer),
-        (TRACE_SLOTS, Binding::StorageBuffer),
-        (TRACE_POLYNOMIALS, Binding::StorageBuffer),
-        (SHADE_OBJECTS, Binding::StorageBuffer),
-        (SHADE_COLORS, Binding::StorageBuffer),
-        (SHADE_IMAGES, Binding::StorageBuffer),
-        (SHADE_TEXELS, Binding::StorageBuffer),
-    ];
+    pub fn bindings(form: RayLoop) -> impl Iterator<Item = (u32, Binding)> {
+        let buffers = [TRACE_INFO, SHADE_COLORS, SHADE_IMAGES, SHADE_TEXELS];
+        let buffers = buffers.map(|binding| (binding, Binding::StorageBuffer));
+        let objects = (SHADE_OBJECTS, form.read(Texel::Four));
+        buffers.into_iter().chain([objects]).chain(surface_lists(form))
+    }
 
     /// Binds all of it.
     pub fn bind<'p>(self, pass: PassBuilder<'p>) -> PassBuilder<'p> {

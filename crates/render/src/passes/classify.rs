@@ -1,16 +1,17 @@
-//! The passes `classify` and `list_lit`.
+//! The pass `classify`.
 
 use super::line;
 use crate::state::{RayLoop, StoredRays, Touch};
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use crate::wave::WaveBuffers;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
     SHADE_FILM, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, TRACE_HITS, TRACE_POLYNOMIALS, WAVE_LIT,
-    WAVE_LIT_RAYS, WAVE_NEXT, WAVE_PATHS, WaveParams,
+    WAVE_LIT_HITS, WAVE_NEXT_MARKS, WAVE_NEXT_PATHS, WAVE_PATHS, WAVE_SCATTERING, WaveParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
 
-/// What the passes work on.
+/// What the pass works on.
 #[derive(Clone, Copy)]
 pub(crate) struct ClassifyIo<'a> {
     pub state: &'a StoredRays,
@@ -20,80 +21,55 @@ pub(crate) struct ClassifyIo<'a> {
     pub film: &'a Buffer,
     pub images: &'a Buffer,
     pub texels: &'a Buffer,
-    pub paths: &'a Buffer,
-    /// One u32 a ray: whether it hit a diffuse surface; then the offset of such rays in a list.
-    pub lit: &'a Buffer,
-    /// One u32 a ray: rays of the next wave that it makes.
-    pub next: &'a Buffer,
-    /// Two u32 a ray: the rays that hit a diffuse surface, and the points hit.
-    pub lit_rays: &'a Buffer,
+    /// Marks are none before.
+    pub wave: &'a WaveBuffers,
 }
 
 /// What becomes of each ray of a wave that has met a surface, or nothing (\[T\] §5).
 pub(crate) struct Classify {
-    classify: Kernel,
-    list_lit: Kernel,
+    kernel: Kernel,
 }
 
 impl Classify {
     pub const NAME: &'static str = "classify";
-    pub const LIST_LIT: &'static str = "list_lit";
 
-    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
-        let params = size_of::<WaveParams>();
-        let kernel = |name, module: &[u32], buffers: &[u32]| {
-            let mut bindings = form.bindings(Touch::Reads);
-            bindings.extend(buffers.iter().map(|&binding| (binding, Binding::StorageBuffer)));
-            Kernel::new(device, name, module, &bindings, params)
-        };
+    pub fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, GpuError> {
         let buffers = [
-            TRACE_POLYNOMIALS,
-            TRACE_HITS,
-            SHADE_OBJECTS,
             SHADE_FILM,
             SHADE_IMAGES,
             SHADE_TEXELS,
-            WAVE_PATHS,
+            WAVE_NEXT_PATHS,
             WAVE_LIT,
-            WAVE_NEXT,
+            WAVE_LIT_HITS,
+            WAVE_SCATTERING,
+            WAVE_NEXT_MARKS,
         ];
-        Ok(Self {
-            classify: kernel(
-                Self::NAME,
-                &form.module(spirv::classify, spirv::classify_queue),
-                &buffers,
-            )?,
-            list_lit: kernel(
-                Self::LIST_LIT,
-                &form.module(spirv::list_lit, spirv::list_lit_queue),
-                &[WAVE_LIT, WAVE_LIT_RAYS],
-            )?,
-        })
+        let read = [TRACE_POLYNOMIALS, TRACE_HITS, SHADE_OBJECTS, WAVE_PATHS];
+        let mut bindings = form.bindings(Touch::Reads);
+        bindings.extend(read.map(|binding| (binding, form.read(Texel::Four))));
+        bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        let module = form.module(spirv::classify, spirv::classify_queue);
+        let (params, scene) = (size_of::<WaveParams>(), Some(scene));
+        let kernel = Kernel::specialized(device, Self::NAME, &module, &bindings, params, scene)?;
+        Ok(Self { kernel })
     }
 
     /// Records the classes of a wave whose rays have all ended.
     pub fn record(&self, rec: &mut Recorder, io: ClassifyIo<'_>, params: &WaveParams) {
         io.state
-            .bind_read(rec.pass(Self::NAME, &self.classify))
+            .bind_read(rec.pass(Self::NAME, &self.kernel))
             .buffer(TRACE_POLYNOMIALS, io.polynomials)
             .buffer(TRACE_HITS, io.hits)
             .buffer(SHADE_OBJECTS, io.objects)
             .buffer(SHADE_FILM, io.film)
             .buffer(SHADE_IMAGES, io.images)
             .buffer(SHADE_TEXELS, io.texels)
-            .buffer(WAVE_PATHS, io.paths)
-            .buffer(WAVE_LIT, io.lit)
-            .buffer(WAVE_NEXT, io.next)
-            .push(params)
-            .dispatch(line(params.ray_count));
-    }
-
-    /// Records the list of rays that hit a diffuse surface; `lit` holds offsets by now.
-    pub fn record_list(&self, rec: &mut Recorder, io: ClassifyIo<'_>, params: &WaveParams) {
-        io.state
-            .bind_read(rec.pass(Self::LIST_LIT, &self.list_lit))
-            .buffer(WAVE_LIT, io.lit)
-            .buffer(WAVE_LIT_RAYS, io.lit_rays)
+            .buffer(WAVE_PATHS, io.wave.paths())
+            .buffer(WAVE_NEXT_PATHS, io.wave.paths())
+            .buffer(WAVE_LIT, &io.wave.lit.bits)
+            .buffer(WAVE_LIT_HITS, io.wave.lit_hits())
+            .buffer(WAVE_SCATTERING, &io.wave.scattering.bits)
+            .buffer(WAVE_NEXT_MARKS, &io.wave.next.bits)
             .push(params)
             .dispatch(line(params.ray_count));
     }

@@ -1,7 +1,8 @@
 //! The pass `disc_count`.
 
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
-use kernels::layout::{DISC_OFFSETS, DISC_POLYNOMIALS, DiscParams};
+use crate::state::RayLoop;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
+use kernels::layout::{DISC_OFFSETS, DiscParams, TRACE_POLYNOMIALS};
 use kernels::spirv;
 use points::device::line;
 use std::sync::Arc;
@@ -14,11 +15,12 @@ pub(crate) struct DiscCount {
 impl DiscCount {
     pub const NAME: &'static str = "disc_count";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
         let bindings =
-            [DISC_POLYNOMIALS, DISC_OFFSETS].map(|binding| (binding, Binding::StorageBuffer));
+            [(TRACE_POLYNOMIALS, form.read(Texel::Four)), (DISC_OFFSETS, Binding::StorageBuffer)];
+        let module = form.module(spirv::disc_count, spirv::disc_count_queue);
         let params = size_of::<DiscParams>();
-        let kernel = Kernel::new(device, Self::NAME, &spirv::disc_count(), &bindings, params)?;
+        let kernel = Kernel::new(device, Self::NAME, &module, &bindings, params)?;
         Ok(Self { kernel })
     }
 
@@ -31,7 +33,7 @@ impl DiscCount {
         params: &DiscParams,
     ) {
         rec.pass(Self::NAME, &self.kernel)
-            .buffer(DISC_POLYNOMIALS, polynomials)
+            .buffer(TRACE_POLYNOMIALS, polynomials)
             .buffer(DISC_OFFSETS, counts)
             .push(params)
             .dispatch(line(params.point_count));

@@ -1,7 +1,8 @@
 //! The pass `disc_emit`.
 
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
-use kernels::layout::{DISC_KEYS, DISC_OFFSETS, DISC_POLYNOMIALS, DISC_SLOTS, DiscParams};
+use crate::state::RayLoop;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
+use kernels::layout::{DISC_KEYS, DISC_OFFSETS, DISC_SLOTS, DiscParams, TRACE_POLYNOMIALS};
 use kernels::spirv;
 use points::device::{Pairs, line};
 use std::sync::Arc;
@@ -14,11 +15,16 @@ pub(crate) struct DiscEmit {
 impl DiscEmit {
     pub const NAME: &'static str = "disc_emit";
 
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
-        let bindings = [DISC_POLYNOMIALS, DISC_OFFSETS, DISC_KEYS, DISC_SLOTS]
-            .map(|binding| (binding, Binding::StorageBuffer));
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+        let bindings = [
+            (TRACE_POLYNOMIALS, form.read(Texel::Four)),
+            (DISC_OFFSETS, form.read(Texel::One)),
+            (DISC_KEYS, Binding::StorageBuffer),
+            (DISC_SLOTS, Binding::StorageBuffer),
+        ];
+        let module = form.module(spirv::disc_emit, spirv::disc_emit_queue);
         let params = size_of::<DiscParams>();
-        let kernel = Kernel::new(device, Self::NAME, &spirv::disc_emit(), &bindings, params)?;
+        let kernel = Kernel::new(device, Self::NAME, &module, &bindings, params)?;
         Ok(Self { kernel })
     }
 
@@ -32,7 +38,7 @@ impl DiscEmit {
         params: &DiscParams,
     ) {
         rec.pass(Self::NAME, &self.kernel)
-            .buffer(DISC_POLYNOMIALS, polynomials)
+            .buffer(TRACE_POLYNOMIALS, polynomials)
             .buffer(DISC_OFFSETS, offsets)
             .buffer(DISC_KEYS, &pairs.keys)
             .buffer(DISC_SLOTS, &pairs.slots)

@@ -1,11 +1,11 @@
 //! The pass `disc_trace`.
 
-use super::{Records, over_pixels};
+use super::{disc_lists, over_pixels};
 use crate::discs::DiscLists;
 use crate::state::{RayLoop, RayState, Touch};
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
-    DiscTraceParams, TRACE_CELLS, TRACE_KEYS, TRACE_LIVE, TRACE_POLYNOMIALS, TRACE_SLOTS,
+    DISC_KEYS_IN, DISC_RANGES_IN, DISC_SLOTS_IN, DiscTraceParams, TRACE_LIVE, TRACE_POLYNOMIALS,
     TraceParams,
 };
 use kernels::spirv;
@@ -29,20 +29,12 @@ pub(crate) struct DiscTrace {
 impl DiscTrace {
     pub const NAME: &'static str = "disc_trace";
 
-    pub fn new(device: &Arc<Device>, records: Records, form: RayLoop) -> Result<Self, GpuError> {
-        let (module, polynomials) = match records {
-            Records::Texels => (
-                form.module(spirv::disc_trace_texels, spirv::disc_trace_texels_queue),
-                Binding::UniformTexelBuffer,
-            ),
-            Records::Storage => {
-                (form.module(spirv::disc_trace, spirv::disc_trace_queue), Binding::StorageBuffer)
-            }
-        };
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+        let module = form.module(spirv::disc_trace, spirv::disc_trace_queue);
         let mut bindings = form.bindings(Touch::Updates);
-        let buffers = [TRACE_CELLS, TRACE_SLOTS, TRACE_LIVE, TRACE_KEYS];
-        bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
-        bindings.push((TRACE_POLYNOMIALS, polynomials));
+        bindings.push((TRACE_LIVE, Binding::StorageBuffer));
+        bindings.push((TRACE_POLYNOMIALS, form.read(Texel::Four)));
+        bindings.extend(disc_lists(form));
         let params = size_of::<DiscTraceParams>();
         let kernel = Kernel::new(device, Self::NAME, &module, &bindings, params)?;
         Ok(Self { kernel })
@@ -61,9 +53,9 @@ impl DiscTrace {
         let pass = rec.pass(Self::NAME, &self.kernel);
         io.state
             .bind_update(pass)
-            .buffer(TRACE_CELLS, &io.lists.tiles)
-            .buffer(TRACE_KEYS, &io.lists.pairs.keys)
-            .buffer(TRACE_SLOTS, &io.lists.pairs.slots)
+            .buffer(DISC_RANGES_IN, &io.lists.tiles)
+            .buffer(DISC_KEYS_IN, &io.lists.pairs.keys)
+            .buffer(DISC_SLOTS_IN, &io.lists.pairs.slots)
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
             .buffer(TRACE_LIVE, io.live)
             .push(&params)

@@ -1,39 +1,15 @@
 //! The pass `grid_trace`.
 
-use super::line;
+use super::{line, surface_lists};
 use crate::state::{RayLoop, RayState, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
     LIVE_RAYS, TRACE_CELLS, TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS, TRACE_SLOTS, TraceParams,
+    WAVE_MARKS,
 };
 use kernels::spirv;
 use points::device::Surfaces;
 use std::sync::Arc;
-
-/// How the pass reads polynomials. Both give the same bits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Records {
-    /// Through a storage buffer, on any device.
-    Storage,
-    /// Through a uniform texel buffer, where one may be long enough.
-    Texels,
-}
-
-impl Records {
-    /// Texels of 16 bytes that a polynomial takes.
-    const TEXELS: u64 = 4;
-
-    /// Texels where the device's limit allows them for so many points.
-    #[must_use]
-    pub fn best_for(device: &Device, points: usize) -> Self {
-        let needed = points as u64 * Self::TEXELS;
-        if needed <= u64::from(device.limits().max_texel_buffer_elements) {
-            Self::Texels
-        } else {
-            Self::Storage
-        }
-    }
-}
 
 /// What the pass works on.
 pub(crate) struct GridTraceIo<'a> {
@@ -41,6 +17,8 @@ pub(crate) struct GridTraceIo<'a> {
     pub state: &'a RayState,
     /// One u32, zero before: how many rays have not ended.
     pub live: &'a Buffer,
+    /// One bit a ray of the wave, zero before: those.
+    pub marks: &'a Buffer,
     /// Those that have not ended, for passes over them alone.
     pub live_rays: &'a Buffer,
 }
@@ -63,30 +41,15 @@ pub(crate) struct GridTrace {
 impl GridTrace {
     pub const NAME: &'static str = "grid_trace";
 
-    pub fn new(device: &Arc<Device>, records: Records, form: RayLoop) -> Result<Self, GpuError> {
-        let (modules, polynomials) = match records {
-            Records::Texels => (
-                [
-                    form.module(spirv::grid_trace_texels, spirv::grid_trace_texels_queue),
-                    form.module(
-                        spirv::grid_trace_leaving_texels,
-                        spirv::grid_trace_leaving_texels_queue,
-                    ),
-                ],
-                Binding::UniformTexelBuffer,
-            ),
-            Records::Storage => (
-                [
-                    form.module(spirv::grid_trace, spirv::grid_trace_queue),
-                    form.module(spirv::grid_trace_leaving, spirv::grid_trace_leaving_queue),
-                ],
-                Binding::StorageBuffer,
-            ),
-        };
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+        let modules = [
+            form.module(spirv::grid_trace, spirv::grid_trace_queue),
+            form.module(spirv::grid_trace_leaving, spirv::grid_trace_leaving_queue),
+        ];
         let mut bindings = form.bindings(Touch::Updates);
-        let buffers = [TRACE_INFO, TRACE_CELLS, TRACE_SLOTS, TRACE_LIVE, LIVE_RAYS];
+        let buffers = [TRACE_INFO, TRACE_LIVE, LIVE_RAYS, WAVE_MARKS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
-        bindings.push((TRACE_POLYNOMIALS, polynomials));
+        bindings.extend(surface_lists(form));
         let params = size_of::<TraceParams>();
         let kernel = |module: &[u32]| Kernel::new(device, Self::NAME, module, &bindings, params);
         Ok(Self { from_camera: kernel(&modules[0])?, leaving: kernel(&modules[1])? })
@@ -116,6 +79,7 @@ impl GridTrace {
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
             .buffer(TRACE_LIVE, io.live)
             .buffer(LIVE_RAYS, io.live_rays)
+            .buffer(WAVE_MARKS, io.marks)
             .push(params)
             .dispatch(line(params.ray_count));
     }

@@ -3,7 +3,7 @@
 use super::line;
 use crate::state::{RayLoop, StoredRays, Touch};
 use crate::volumes::VolumeBuffers;
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
     MARCH_CELLS, MARCH_LENGTHS, MARCH_LIGHT, MARCH_POINTS, MARCH_STATE, MARCH_STOPS, MARCH_VISIBLE,
     MARCH_VOLUMES, MarchParams, SHADE_LIGHTS, SHADE_OBJECTS, TRACE_HITS, TRACE_LIVE,
@@ -57,7 +57,10 @@ impl March {
                 MARCH_STATE,
             ];
             let all = buffers.iter().chain(more);
-            bindings.extend(all.map(|&binding| (binding, Binding::StorageBuffer)));
+            bindings.extend(all.map(|&binding| match binding {
+                SHADE_OBJECTS => (binding, form.read(Texel::Four)),
+                _ => (binding, Binding::StorageBuffer),
+            }));
             Kernel::new(device, Self::NAME, module, &bindings, params)
         };
         Ok(Self {

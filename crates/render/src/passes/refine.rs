@@ -1,11 +1,11 @@
 //! The passes `refine` and `resume`.
 
-use super::{Records, line};
+use super::line;
 use crate::state::{RayLoop, StoredRays, Touch};
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
     REFINE_OFFSETS, REFINE_OUTCOMES, REFINE_POINTS, SHADE_OBJECTS, TRACE_HITS, TRACE_INFO,
-    TRACE_LIVE, TRACE_POLYNOMIALS, TraceParams,
+    TRACE_LIVE, TRACE_POLYNOMIALS, TraceParams, WAVE_MARKS,
 };
 use kernels::spirv;
 use points::device::{PointCells, Surfaces};
@@ -33,32 +33,18 @@ impl Refine {
     pub const NAME: &'static str = "refine";
     pub const RESUME: &'static str = "resume";
 
-    pub fn new(device: &Arc<Device>, records: Records, form: RayLoop) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
         let params = size_of::<TraceParams>();
         let mut bindings = form.bindings(Touch::Reads);
-        let buffers = [
-            TRACE_INFO,
-            TRACE_POLYNOMIALS,
-            TRACE_LIVE,
-            SHADE_OBJECTS,
-            TRACE_HITS,
-            REFINE_OFFSETS,
-            REFINE_OUTCOMES,
-        ];
+        let buffers = [TRACE_INFO, TRACE_LIVE, TRACE_HITS, REFINE_OFFSETS, REFINE_OUTCOMES];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
-        let (module, points) = match records {
-            Records::Texels => (
-                form.module(spirv::refine_texels, spirv::refine_texels_queue),
-                Binding::UniformTexelBuffer,
-            ),
-            Records::Storage => {
-                (form.module(spirv::refine, spirv::refine_queue), Binding::StorageBuffer)
-            }
-        };
-        bindings.push((REFINE_POINTS, points));
+        bindings.push((TRACE_POLYNOMIALS, form.read(Texel::Four)));
+        bindings.push((SHADE_OBJECTS, form.read(Texel::Four)));
+        bindings.push((REFINE_POINTS, form.read(Texel::Four)));
+        let module = form.module(spirv::refine, spirv::refine_queue);
         let refine = Kernel::new(device, Self::NAME, &module, &bindings, params)?;
         let mut bindings = form.bindings(Touch::Updates);
-        let buffers = [TRACE_INFO, TRACE_HITS];
+        let buffers = [TRACE_INFO, TRACE_HITS, WAVE_MARKS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         let resume = Kernel::new(
             device,
@@ -86,19 +72,21 @@ impl Refine {
             .dispatch(line(params.ray_count));
     }
 
-    /// Records the way on of rejected rays, in place.
+    /// Records the way on of rejected rays, in place; `marks` are zero before.
     pub fn record_resume(
         &self,
         rec: &mut Recorder,
         surfaces: &Surfaces,
         state: &StoredRays,
         hits: &Buffer,
+        marks: &Buffer,
         params: &TraceParams,
     ) {
         state
             .bind_in_place(rec.pass(Self::RESUME, &self.resume))
             .buffer(TRACE_INFO, &surfaces.grid_info)
             .buffer(TRACE_HITS, hits)
+            .buffer(WAVE_MARKS, marks)
             .push(params)
             .dispatch(line(params.ray_count));
     }

@@ -1,10 +1,10 @@
 //! The pass `shade`.
 
-use super::{AlbedoIo, line};
+use super::{AlbedoIo, line, lit_rays};
 use crate::state::{RayLoop, StoredRays, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_FILM, TRACE_HITS, WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS, WaveParams,
+    SHADE_FILM, WAVE_LIGHT_SUMS, WAVE_LIT_HITS, WAVE_LIT_RAYS, WAVE_PATHS, WaveParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -15,7 +15,8 @@ pub(crate) struct ShadeIo<'a> {
     /// The shadow rays, as those towards the last light left them.
     pub shadows: &'a StoredRays,
     pub albedos: AlbedoIo<'a>,
-    pub hits: &'a Buffer,
+    /// One `LitHit` a ray.
+    pub lit_hits: &'a Buffer,
     pub film: &'a Buffer,
     pub paths: &'a Buffer,
     pub lit_rays: &'a Buffer,
@@ -30,18 +31,20 @@ pub(crate) struct Shade {
 impl Shade {
     pub const NAME: &'static str = "shade";
 
-    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, GpuError> {
         let mut bindings = form.bindings(Touch::Reads);
-        bindings.extend(AlbedoIo::BINDINGS);
-        let buffers = [TRACE_HITS, SHADE_FILM, WAVE_PATHS, WAVE_LIT_RAYS, WAVE_LIGHT_SUMS];
+        bindings.extend(AlbedoIo::bindings(form));
+        let buffers = [SHADE_FILM, WAVE_LIGHT_SUMS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        bindings.extend(lit_rays(form));
         let params = size_of::<WaveParams>();
-        let kernel = Kernel::new(
+        let kernel = Kernel::specialized(
             device,
             Self::NAME,
             &form.module(spirv::shade, spirv::shade_queue),
             &bindings,
             params,
+            Some(scene),
         )?;
         Ok(Self { kernel })
     }
@@ -51,7 +54,7 @@ impl Shade {
         let pass = io.shadows.bind_read(rec.pass(Self::NAME, &self.kernel));
         io.albedos
             .bind(pass)
-            .buffer(TRACE_HITS, io.hits)
+            .buffer(WAVE_LIT_HITS, io.lit_hits)
             .buffer(SHADE_FILM, io.film)
             .buffer(WAVE_PATHS, io.paths)
             .buffer(WAVE_LIT_RAYS, io.lit_rays)

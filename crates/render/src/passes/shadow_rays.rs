@@ -1,11 +1,11 @@
 //! The pass `shadow_rays`.
 
-use super::line;
+use super::{line, lit_rays};
 use crate::state::{RayLoop, RayState, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
 use kernels::layout::{
-    SHADE_FILM, SHADE_LIGHTS, TRACE_HITS, TRACE_INFO, WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS,
-    WAVE_TALLY, WaveParams,
+    SHADE_FILM, SHADE_LIGHTS, TRACE_INFO, WAVE_LIGHT_SUMS, WAVE_LIT_HITS, WAVE_LIT_RAYS,
+    WAVE_PATHS, WAVE_TALLY, WaveParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -16,7 +16,8 @@ pub(crate) struct ShadowRaysIo<'a> {
     /// The shadow rays: as those towards the light before left it, and for those towards this one.
     pub shadows: &'a RayState,
     pub grid_info: &'a Buffer,
-    pub hits: &'a Buffer,
+    /// One `LitHit` a ray.
+    pub lit_hits: &'a Buffer,
     pub lights: &'a Buffer,
     pub film: &'a Buffer,
     pub paths: &'a Buffer,
@@ -34,26 +35,19 @@ pub(crate) struct ShadowRays {
 impl ShadowRays {
     pub const NAME: &'static str = "shadow_rays";
 
-    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, GpuError> {
         let mut bindings = form.bindings(Touch::Updates);
-        let buffers = [
-            TRACE_INFO,
-            TRACE_HITS,
-            SHADE_LIGHTS,
-            SHADE_FILM,
-            WAVE_PATHS,
-            WAVE_LIT_RAYS,
-            WAVE_LIGHT_SUMS,
-            WAVE_TALLY,
-        ];
+        let buffers = [TRACE_INFO, SHADE_LIGHTS, SHADE_FILM, WAVE_LIGHT_SUMS, WAVE_TALLY];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        bindings.extend(lit_rays(form));
         let params = size_of::<WaveParams>();
-        let kernel = Kernel::new(
+        let kernel = Kernel::specialized(
             device,
             Self::NAME,
             &form.module(spirv::shadow_rays, spirv::shadow_rays_queue),
             &bindings,
             params,
+            Some(scene),
         )?;
         Ok(Self { kernel })
     }
@@ -63,7 +57,7 @@ impl ShadowRays {
         io.shadows
             .bind_update(rec.pass(Self::NAME, &self.kernel))
             .buffer(TRACE_INFO, io.grid_info)
-            .buffer(TRACE_HITS, io.hits)
+            .buffer(WAVE_LIT_HITS, io.lit_hits)
             .buffer(SHADE_LIGHTS, io.lights)
             .buffer(SHADE_FILM, io.film)
             .buffer(WAVE_PATHS, io.paths)

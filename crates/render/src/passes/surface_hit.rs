@@ -1,8 +1,8 @@
 //! The pass `surface_hit`.
 
-use super::line;
+use super::{line, surface_lists};
 use crate::state::{RayLoop, StoredRays, Touch};
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
     SHADE_OBJECTS, TRACE_CELLS, TRACE_HITS, TRACE_INFO, TRACE_LIVE, TRACE_POLYNOMIALS, TRACE_SLOTS,
     TraceParams,
@@ -16,7 +16,7 @@ pub(crate) struct SurfaceHitIo<'a> {
     pub state: &'a StoredRays,
     pub surfaces: &'a Surfaces,
     pub objects: &'a Buffer,
-    /// Zero before a tile's first time.
+    /// Zero before a tile's first time, where hits are refined.
     pub hits: &'a Buffer,
     /// Two u32, zero before: pending hits, and nothing.
     pub live: &'a Buffer,
@@ -30,25 +30,20 @@ pub(crate) struct SurfaceHit {
 impl SurfaceHit {
     pub const NAME: &'static str = "surface_hit";
 
-    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, GpuError> {
         let mut bindings = form.bindings(Touch::Reads);
-        let buffers = [
-            TRACE_INFO,
-            TRACE_CELLS,
-            TRACE_SLOTS,
-            TRACE_POLYNOMIALS,
-            TRACE_LIVE,
-            SHADE_OBJECTS,
-            TRACE_HITS,
-        ];
+        let buffers = [TRACE_INFO, TRACE_LIVE, TRACE_HITS];
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
+        bindings.push((SHADE_OBJECTS, form.read(Texel::Four)));
+        bindings.extend(surface_lists(form));
         let params = size_of::<TraceParams>();
-        let kernel = Kernel::new(
+        let kernel = Kernel::specialized(
             device,
             Self::NAME,
             &form.module(spirv::surface_hit, spirv::surface_hit_queue),
             &bindings,
             params,
+            Some(scene),
         )?;
         Ok(Self { kernel })
     }

@@ -1,0 +1,391 @@
+//! Exact nearest neighbours on the device: the passes `leaf_boxes`, `node_boxes`, `bound_reach`,
+//! `gather_leaves` and `find_neighbors`.
+//!
+//! Points lie along a Hilbert curve, so eight consecutive ones are a leaf, eight leaves a node, and so on: a
+//! tree without a build, of any density. A first bound comes from the points around one in memory; then each
+//! leaf's points look together for the leaves that their balls touch; then each point goes through its own.
+//! What is pruned is pruned by a distance computed with the operations of d², and rounding is monotone, so
+//! the lists are those of [`NeighborSearch`], ties included.
+//!
+//! Work is bounded. A leaf whose points touch too many others, since little of what is near them is near them
+//! in memory, is searched again with more room; one that touches thousands (with a point far from all, whose
+//! ball holds the whole set) is left to the host, and counted.
+
+use super::line;
+use super::work::Work;
+use crate::neighbors::nearest_of_few;
+use crate::{NeighborSearch, SlotRange};
+use gpu::{Binding, Buffer, Device, GpuError, Kernel, Texel};
+use kernels::layout::{
+    LEAF_LEVELS, LEAF_POINTS, LevelParams, NONE, Point, SEARCH_BOUNDS, SEARCH_COUNTS,
+    SEARCH_GROUPS, SEARCH_LEAVES, SEARCH_LISTS, SEARCH_NODES, SEARCH_POINTS, SEARCH_TIES,
+    SearchNode, SearchParams,
+};
+use kernels::spirv;
+use std::sync::Arc;
+
+/// Label and row of the timing table.
+const FIND: &str = "find_neighbors";
+/// Of so many leaves with ties one, and all are taken to have some: lattices and terrains.
+const TIED_SHARE: usize = 16;
+/// Neighbours that the smaller kernels find, at most.
+const FEW: u32 = 16;
+/// Leaves that a leaf's points may touch, for every 16 neighbours.
+const CAPACITY: u32 = 96;
+/// The same for the few leaves whose points touched more, and how many of those are searched in one go. Work
+/// stays below the 65 535 loop iterations after which lavapipe stops: a window of 32 leaves takes at most 280.
+const LARGE_CAPACITY: u32 = 4096;
+const LARGE_GROUPS: u32 = 256;
+/// Leaves of a batch that the host searches without a tree.
+const WITHOUT_TREE: usize = 8;
+
+/// The pipelines.
+pub(crate) struct Search {
+    device: Arc<Device>,
+    leaf_boxes: Kernel,
+    node_boxes: Kernel,
+    bound: [Kernel; 2],
+    gather: Kernel,
+    find: [Kernel; 2],
+    /// The first of these where no two others are equally far; texels alone.
+    find_untied: Option<Kernel>,
+}
+
+/// The boxes around one object's points.
+pub(crate) struct Boxes {
+    object: SlotRange,
+    nodes: Buffer,
+    root: u32,
+    leaf_count: u32,
+}
+
+/// Space for one batch of points of an object.
+pub(crate) struct SearchSpace {
+    neighbors: u32,
+    stride: u32,
+    capacity: u32,
+    bounds: Buffer,
+    leaves: Buffer,
+    counts: Buffer,
+    large_leaves: Buffer,
+    large_counts: Buffer,
+    groups: Buffer,
+    /// A word a leaf.
+    ties: Buffer,
+    /// Whether ties were found to be the rule.
+    tied: bool,
+    /// Slots, `stride` a point, nearest first, `NONE` behind the last.
+    pub lists: Buffer,
+}
+
+impl Search {
+    /// `texels`: points and boxes are read through texel buffers.
+    pub fn new(device: &Arc<Device>, texels: bool) -> Result<Self, GpuError> {
+        let read =
+            if texels { Binding::UniformTexelBuffer(Texel::Four) } else { Binding::StorageBuffer };
+        let kernel = |name, module: &[u32], bindings: &[(u32, Binding)], params| {
+            Kernel::new(device, name, module, bindings, params)
+        };
+        let storage = |at| (at, Binding::StorageBuffer);
+        let bound = |module: &[u32]| {
+            let bindings = [(SEARCH_POINTS, read), storage(SEARCH_BOUNDS)];
+            kernel("bound_reach", module, &bindings, size_of::<SearchParams>())
+        };
+        let finding = [
+            (SEARCH_POINTS, read),
+            (SEARCH_LEAVES, read),
+            storage(SEARCH_BOUNDS),
+            storage(SEARCH_COUNTS),
+            storage(SEARCH_LISTS),
+            storage(SEARCH_GROUPS),
+            storage(SEARCH_TIES),
+        ];
+        let params = size_of::<SearchParams>();
+        let find = |module: &[u32]| kernel(FIND, module, &finding[..6], params);
+        let untied = |module: &[u32]| kernel(FIND, module, &finding, params);
+        let boxes = [(SEARCH_POINTS, read), storage(SEARCH_NODES)];
+        let gather = [
+            (SEARCH_POINTS, read),
+            (SEARCH_NODES, read),
+            storage(SEARCH_BOUNDS),
+            storage(SEARCH_LEAVES),
+            storage(SEARCH_COUNTS),
+            storage(SEARCH_GROUPS),
+        ];
+        let modules = |texels_few: Vec<u32>, texels_many, many| match texels {
+            true => [texels_few, texels_many],
+            false => [Vec::clone(&many), many],
+        };
+        let bounds = modules(
+            spirv::bound_reach_texels_few(),
+            spirv::bound_reach_texels(),
+            spirv::bound_reach(),
+        );
+        let finds = modules(
+            spirv::find_neighbors_texels_few(),
+            spirv::find_neighbors_texels(),
+            spirv::find_neighbors(),
+        );
+        let gathers = if texels { spirv::gather_leaves_texels() } else { spirv::gather_leaves() };
+        let leaf_boxes = if texels { spirv::leaf_boxes_texels() } else { spirv::leaf_boxes() };
+        let level = size_of::<LevelParams>();
+        Ok(Self {
+            device: Arc::clone(device),
+            leaf_boxes: kernel("leaf_boxes", &leaf_boxes, &boxes, level)?,
+            node_boxes: kernel("node_boxes", &spirv::node_boxes(), &boxes[1..], level)?,
+            bound: [bound(&bounds[0])?, bound(&bounds[1])?],
+            gather: kernel("gather_leaves", &gathers, &gather, size_of::<SearchParams>())?,
+            find: [find(&finds[0])?, find(&finds[1])?],
+            find_untied: match texels {
+                true => Some(untied(&spirv::find_neighbors_untied())?),
+                false => None,
+            },
+        })
+    }
+
+    /// Records the boxes around the points of one object, whose lists will have at most `neighbors` entries.
+    pub fn record_boxes(
+        &self,
+        rec: &mut Work,
+        points: &Buffer,
+        object: SlotRange,
+        neighbors: u32,
+    ) -> Result<Boxes, GpuError> {
+        let mut offsets = [0; LEAF_LEVELS as usize];
+        let mut counts = vec![];
+        let mut boxes = object.count;
+        let mut total = 0;
+        while counts.is_empty() || boxes > LEAF_POINTS {
+            boxes = boxes.div_ceil(LEAF_POINTS).next_multiple_of(LEAF_POINTS);
+            offsets[counts.len()] = total;
+            total += boxes;
+            counts.push(boxes);
+        }
+        let bytes = u64::from(total) * size_of::<SearchNode>() as u64;
+        let nodes = Buffer::new(&self.device, "search boxes", bytes)?;
+        let top = counts.len() - 1;
+        for (level, &count) in counts.iter().enumerate() {
+            let params = LevelParams {
+                first_slot: object.first_slot,
+                point_count: object.count,
+                neighbors,
+                level: level as u32,
+                top: top as u32,
+                count,
+                offsets,
+            };
+            if level == 0 {
+                rec.pass("leaf_boxes", &self.leaf_boxes)
+                    .buffer(SEARCH_POINTS, points)
+                    .buffer(SEARCH_NODES, &nodes)
+                    .push(&params)
+                    .dispatch(line(count));
+            } else {
+                rec.pass("node_boxes", &self.node_boxes)
+                    .buffer(SEARCH_NODES, &nodes)
+                    .push(&params)
+                    .dispatch(line(count));
+            }
+        }
+        Ok(Boxes { object, nodes, root: offsets[top], leaf_count: counts[0] })
+    }
+
+    /// Space for lists of so many entries of at most so many points.
+    pub fn space(&self, points: u32, neighbors: u32) -> Result<SearchSpace, GpuError> {
+        let device = &self.device;
+        let (stride, groups) = (neighbors.next_multiple_of(4), points.div_ceil(LEAF_POINTS));
+        let capacity = CAPACITY * neighbors.div_ceil(FEW);
+        let words = |name, count: u64| Buffer::new(device, name, 4 * count);
+        Ok(SearchSpace {
+            neighbors,
+            stride,
+            capacity,
+            bounds: words("neighbor bounds", u64::from(points))?,
+            leaves: words("leaf lists", u64::from(groups) * u64::from(capacity))?,
+            counts: words("leaf counts", u64::from(groups))?,
+            large_leaves: words(
+                "large leaf lists",
+                u64::from(groups.min(LARGE_GROUPS)) * u64::from(LARGE_CAPACITY),
+            )?,
+            large_counts: words("large leaf counts", u64::from(LARGE_GROUPS))?,
+            ties: words("leaves with ties", u64::from(groups))?,
+            tied: false,
+            groups: words("large leaves", u64::from(LARGE_GROUPS))?,
+            lists: words("neighbors", u64::from(points) * u64::from(stride))?,
+        })
+    }
+
+    /// Finds the neighbours of `count` points from place `first` of the object on; returns how many of them
+    /// were left to the host. `own` has the object's points.
+    pub fn find<'a>(
+        &self,
+        rec: &mut Work,
+        points: &Buffer,
+        boxes: &Boxes,
+        space: &mut SearchSpace,
+        [first, count]: [u32; 2],
+        (own, on_host): (&'a [Point], &mut Option<NeighborSearch<'a>>),
+    ) -> Result<u64, GpuError> {
+        let params = SearchParams {
+            first_slot: boxes.object.first_slot,
+            point_count: boxes.object.count,
+            batch_first: first,
+            batch_count: count,
+            neighbors: space.neighbors,
+            stride: space.stride,
+            capacity: space.capacity,
+            root: boxes.root,
+            leaf_count: boxes.leaf_count,
+            listed: 0,
+        };
+        if !space.neighbors.is_multiple_of(4) {
+            let bytes = u64::from(count) * u64::from(space.stride) * 4;
+            rec.fill(&space.lists, 0, bytes, NONE);
+        }
+        rec.pass("bound_reach", &self.bound[usize::from(space.neighbors > FEW)])
+            .buffer(SEARCH_POINTS, points)
+            .buffer(SEARCH_BOUNDS, &space.bounds)
+            .push(&params)
+            .dispatch(line(count));
+        let groups = count.div_ceil(LEAF_POINTS);
+        let all = [&space.leaves, &space.counts];
+        self.record_gather(rec, points, boxes, space, all, &params);
+        let untied = self.find_untied.as_ref().filter(|_| space.neighbors <= FEW && !space.tied);
+        if let Some(untied) = untied {
+            rec.fill(&space.ties, 0, u64::from(groups) * 4, 0);
+            rec.pass(FIND, untied)
+                .buffer(SEARCH_POINTS, points)
+                .buffer(SEARCH_BOUNDS, &space.bounds)
+                .buffer(SEARCH_LEAVES, &space.leaves)
+                .buffer(SEARCH_COUNTS, &space.counts)
+                .buffer(SEARCH_LISTS, &space.lists)
+                .buffer(SEARCH_GROUPS, &space.groups)
+                .buffer(SEARCH_TIES, &space.ties)
+                .push(&params)
+                .dispatch(line(count));
+        } else {
+            self.record_find(rec, points, space, all, &params);
+        }
+        rec.submit()?;
+        let mut left = unfinished(&space.counts, groups, NONE)?;
+        if untied.is_some() {
+            let tied = unfinished(&space.ties, groups, 1)?;
+            if tied.len() * TIED_SHARE > groups as usize {
+                space.tied = true;
+                self.record_find(rec, points, space, all, &params);
+                rec.submit()?;
+            } else {
+                left.extend(tied);
+                left.sort_unstable();
+                left.dedup();
+            }
+        }
+        if left.is_empty() {
+            return Ok(0);
+        }
+        let mut too_large = Vec::new();
+        for groups in left.chunks_mut(LARGE_GROUPS as usize) {
+            space.groups.write(0, groups)?;
+            let listed = groups.len() as u32;
+            let params = SearchParams { listed, capacity: LARGE_CAPACITY, ..params };
+            let large = [&space.large_leaves, &space.large_counts];
+            self.record_gather(rec, points, boxes, space, large, &params);
+            self.record_find(rec, points, space, large, &params);
+            rec.submit()?;
+            let unfinished = unfinished(&space.large_counts, listed, NONE)?;
+            too_large.extend(unfinished.into_iter().map(|nth| groups[nth as usize]));
+        }
+        space.find_on_host(&too_large, own, &params, on_host)
+    }
+
+    fn record_gather(
+        &self,
+        rec: &mut Work,
+        points: &Buffer,
+        boxes: &Boxes,
+        space: &SearchSpace,
+        [leaves, counts]: [&Buffer; 2],
+        params: &SearchParams,
+    ) {
+        rec.pass("gather_leaves", &self.gather)
+            .buffer(SEARCH_POINTS, points)
+            .buffer(SEARCH_NODES, &boxes.nodes)
+            .buffer(SEARCH_BOUNDS, &space.bounds)
+            .buffer(SEARCH_LEAVES, leaves)
+            .buffer(SEARCH_COUNTS, counts)
+            .buffer(SEARCH_GROUPS, &space.groups)
+            .push(params)
+            .dispatch(line(groups_of(params)));
+    }
+
+    fn record_find(
+        &self,
+        rec: &mut Work,
+        points: &Buffer,
+        space: &SearchSpace,
+        [leaves, counts]: [&Buffer; 2],
+        params: &SearchParams,
+    ) {
+        rec.pass(FIND, &self.find[usize::from(space.neighbors > FEW)])
+            .buffer(SEARCH_POINTS, points)
+            .buffer(SEARCH_BOUNDS, &space.bounds)
+            .buffer(SEARCH_LEAVES, leaves)
+            .buffer(SEARCH_COUNTS, counts)
+            .buffer(SEARCH_LISTS, &space.lists)
+            .buffer(SEARCH_GROUPS, &space.groups)
+            .push(params)
+            .dispatch(line(groups_of(params) * LEAF_POINTS));
+    }
+}
+
+/// Leaves that a search looks at.
+fn groups_of(params: &SearchParams) -> u32 {
+    match params.listed {
+        0 => params.batch_count.div_ceil(LEAF_POINTS),
+        listed => listed,
+    }
+}
+
+/// Which of the first `count` words are `mark`: of counts, `NONE`, where a list of leaves is not whole.
+fn unfinished(counts: &Buffer, count: u32, mark: u32) -> Result<Vec<u32>, GpuError> {
+    let mut read = vec![0u32; count as usize];
+    counts.read(0, &mut read)?;
+    Ok((0..count).filter(|&nth| read[nth as usize] == mark).collect())
+}
+
+impl SearchSpace {
+    /// Entries of a point in the lists.
+    pub fn stride(&self) -> u32 {
+        self.stride
+    }
+
+    /// Finds the neighbours of some of a batch's leaves on the host; returns of how many points.
+    fn find_on_host<'a>(
+        &self,
+        groups: &[u32],
+        own: &'a [Point],
+        params: &SearchParams,
+        search: &mut Option<NeighborSearch<'a>>,
+    ) -> Result<u64, GpuError> {
+        let mut left = 0;
+        let (k, first_slot) = (self.neighbors as usize, params.first_slot);
+        for group in groups {
+            let from = group * LEAF_POINTS;
+            let to = params.batch_count.min(from + LEAF_POINTS);
+            let range = (params.batch_first + from) as usize..(params.batch_first + to) as usize;
+            let found = if groups.len() <= WITHOUT_TREE && search.is_none() {
+                nearest_of_few(own, first_slot, range, k)
+            } else {
+                let tree = search.get_or_insert_with(|| NeighborSearch::new(own, first_slot));
+                tree.nearest(range, k)
+            };
+            let mut lists = vec![NONE; ((to - from) * self.stride) as usize];
+            for (list, found) in lists.chunks_mut(self.stride as usize).zip(found.chunks(k)) {
+                list[..found.len()].copy_from_slice(found);
+            }
+            self.lists.write(u64::from(from) * u64::from(self.stride) * 4, &lists)?;
+            left += u64::from(to - from);
+        }
+        Ok(left)
+    }
+}

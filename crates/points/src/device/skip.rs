@@ -1,0 +1,58 @@
+//! How far each empty cell is from the next with points: the passes `mark_occupied`, `grow_marks` and
+//! `skip_cells`.
+
+use super::line;
+use super::work::Work;
+use gpu::{Binding, Buffer, Device, GpuError, Kernel};
+use kernels::layout::{
+    GRID_CELLS, GRID_INFO, GridInfo, MOST_SKIPPED, SKIP_BESIDE, SKIP_FAR, SKIP_MARKS_IN,
+    SKIP_MARKS_OUT, SKIP_NEAR, SKIP_OCCUPIED,
+};
+use kernels::spirv;
+use std::sync::Arc;
+
+/// Writes the distances into the ranges of empty cells, so that rays leave all empty cells around one at once.
+pub(crate) fn skip_cells(
+    device: &Arc<Device>,
+    rec: &mut Work,
+    grid: &GridInfo,
+    grid_info: &Buffer,
+    cells: &Buffer,
+) -> Result<(), GpuError> {
+    let kernel = |name, module: &[u32], bindings: &[u32]| {
+        let bindings: Vec<_> = bindings.iter().map(|&at| (at, Binding::StorageBuffer)).collect();
+        Kernel::new(device, name, module, &bindings, 0)
+    };
+    let occupied =
+        kernel("mark_occupied", &spirv::mark_occupied(), &[GRID_INFO, GRID_CELLS, SKIP_MARKS_OUT])?;
+    let grow =
+        kernel("grow_marks", &spirv::grow_marks(), &[GRID_INFO, SKIP_MARKS_IN, SKIP_MARKS_OUT])?;
+    let skip = kernel(
+        "skip_cells",
+        &spirv::skip_cells(),
+        &[GRID_INFO, GRID_CELLS, SKIP_OCCUPIED, SKIP_BESIDE, SKIP_NEAR, SKIP_FAR],
+    )?;
+    let [width, height, depth] = grid.resolution;
+    let words = width.div_ceil(u32::BITS) * height * depth;
+    let marks: Vec<Buffer> = (0..MOST_SKIPPED)
+        .map(|_| Buffer::new(device, "marks of cells", u64::from(words) * 4))
+        .collect::<Result<_, _>>()?;
+    rec.pass("mark_occupied", &occupied)
+        .buffer(GRID_INFO, grid_info)
+        .buffer(GRID_CELLS, cells)
+        .buffer(SKIP_MARKS_OUT, &marks[0])
+        .dispatch(line(words));
+    for grown in marks.windows(2) {
+        rec.pass("grow_marks", &grow)
+            .buffer(GRID_INFO, grid_info)
+            .buffer(SKIP_MARKS_IN, &grown[0])
+            .buffer(SKIP_MARKS_OUT, &grown[1])
+            .dispatch(line(words));
+    }
+    let bindings = [SKIP_OCCUPIED, SKIP_BESIDE, SKIP_NEAR, SKIP_FAR];
+    let pass = rec.pass("skip_cells", &skip).buffer(GRID_INFO, grid_info).buffer(GRID_CELLS, cells);
+    let pass =
+        bindings.into_iter().zip(&marks).fold(pass, |pass, (at, marks)| pass.buffer(at, marks));
+    pass.dispatch(line(words));
+    rec.submit()
+}

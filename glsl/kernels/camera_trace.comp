@@ -1,0 +1,82 @@
+// camera_trace: camera_rays, disc_trace, surface_hit and classify in one, for rays from the eye through the centres
+// of pixels that nothing but surfaces meets (section 4 of the paper).
+//
+// reads   polynomials, the lists of screen tiles, objects
+//         grid, cells, slots   the polynomials around a hit, where normals are blended
+//         images, texels   the environment
+// writes  film             every pixel
+//         lit, lit_hits    as classify does, as are the next
+//         scattering, next_marks
+//         the ray state, hits   of rays that scatter
+//         live             how many rays would need more work than they may spend: then nothing else counts, and
+//                          the tile is traced pass by pass
+// runs    one invocation per pixel of the tile
+// twin    crates/reference/src/camera_rays.rs, disc_trace.rs, surface_hit.rs, wave.rs
+//
+// A workgroup is one screen tile. A ray travels in registers from the eye to its pixel: no state is stored.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define QUEUE // how lists are read
+#define LISTS
+#define STATE_WRITES
+#include "layout.glsl"
+#include "disc_walk.glsl"
+#include "environment.glsl"
+#include "grid.glsl"
+#include "index.glsl"
+#include "objects.glsl"
+
+layout(local_size_x = TILE_GROUP) in;
+layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
+layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
+layout(std430, binding = SHADE_FILM) writeonly buffer Film { FilmPixel film[]; };
+layout(std430, binding = WAVE_LIT_HITS) writeonly buffer LitHits { LitHit lit_hits[]; };
+layout(std430, binding = TRACE_HITS) writeonly buffer Hits { Hit hits[]; };
+layout(push_constant) uniform Push { CameraTraceParams params; };
+#include "camera.glsl"
+#include "film.glsl"
+#include "marks.glsl"
+#include "meeting.glsl"
+
+void main() {
+    uvec2 pixel = tile_pixel();
+    uint at = tile_ray(params.tile_size);
+    bool outside = any(greaterThanEqual(pixel, params.tile_size));
+    vec3 d = camera_direction(place_in_view(params.tile_origin + pixel, vec2(0.0)));
+    Ray ray = new_ray(params.eye, d, outside ? NONE : enter_grid(grid, params.eye, d), NONE);
+    uvec2 tile = pixel / uint(DISC_TILE);
+    walk_discs(ray, disc_range_of(tile.y * screen_tiles(params.tile_size).x + tile.x), params.ranks, params.work);
+    if (ray.cell != NONE) atomicAdd(live, 1u);
+    if (outside) return;
+
+    bool found = ray.hit_slot != NONE;
+    Meeting met = Meeting(vec3(0.0), vec3(0.0), 0u, false);
+    if (found) met = meeting_of(ray);
+    ObjectInfo object = object_at(met.object);
+    bool is_diffuse = found && (!scene_has(SCENE_SCATTERS) || object.material == MATERIAL_DIFFUSE);
+    bool is_lit = is_diffuse && scene_has(SCENE_LIGHTS);
+    if (scene_has(SCENE_LIGHTS) && scene_has(SCENE_DIFFUSE)) {
+        if (is_lit) {
+            lit_hits[at].position = met.position;
+            lit_hits[at].slot = ray.hit_slot;
+            lit_hits[at].normal = met.normal;
+            mark_lit(at);
+        }
+    }
+    if (scene_has(SCENE_SCATTERS)) {
+        bool enters = object.material == MATERIAL_GLASS;
+        bool disperses = object.ior.x != object.ior.y || object.ior.y != object.ior.z;
+        if (found && !is_diffuse) {
+            mark_scattering(at, params.max_bounces == 0u ? 0u : (enters && disperses ? 3u : 1u));
+            store_ray(at, ray);
+            hits[at].position = met.position;
+            hits[at].normal = met.normal;
+        }
+    }
+    vec3 background = params.transparent != 0u ? vec3(0.0) : background_at(params.background, d);
+    vec3 behind = found ? vec3(0.0) : vec3(0.0) + background;
+    write_first(pixel.y * params.tile_size.x + pixel.x, vec4(behind, found ? 1.0 : 0.0), !is_lit, found,
+                vec4(met.position, ray.hit_t * dot3(d, params.forward)),
+                vec4(met.normal, found ? float(met.object) : -1.0), uvec4(ray.tests, ray.cells, ray.hit_slot, 0u),
+                vec3(found ? 1.0 : 0.0));
+}

@@ -1,0 +1,42 @@
+// smooth_sizes: the feature size of each point of a batch as a mean over its neighbours (method, section 1).
+//
+// reads   points
+//         lists            neighbours of the batch's points; NONE fills up
+//         reaches          of all points of the object, in the second round
+// writes  reaches          in the first round: the distance to the last neighbour
+//         sizes            in the second: the mean of a point's own reach and its neighbours'
+// runs    one invocation per point of the batch
+// twin    points::NeighborSearch::smoothed_sizes
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "layout.glsl"
+#include "math.glsl"
+#include "index.glsl"
+#include "cloud.glsl"
+
+layout(local_size_x = LINE_GROUP) in;
+WORDS(SMOOTH_POINTS, points);
+layout(std430, binding = SMOOTH_LISTS) readonly buffer Lists { uint lists[]; };
+layout(std430, binding = SMOOTH_REACHES) buffer Reaches { float reaches[]; };
+layout(std430, binding = SMOOTH_SIZES) writeonly buffer Sizes { float sizes[]; };
+layout(push_constant) uniform Push { SmoothParams params; };
+
+void main() {
+    uint i = list_index();
+    if (i >= params.point_count) return;
+    uint slot = params.first_slot + i;
+    uint list = i * params.stride;
+    uint count = 0u;
+    float sum = params.round > 0u ? reaches[slot] : 0.0;
+    uint last = slot;
+    while (count < params.stride && lists[list + min(count, params.stride - 1u)] != NONE) {
+        last = lists[list + count];
+        sum += params.round > 0u ? reaches[last] : 0.0;
+        ++count;
+    }
+    vec3 way = uintBitsToFloat(words_of(points, last).xyz) - uintBitsToFloat(words_of(points, slot).xyz);
+    if (params.round > 0u)
+        sizes[slot] = sum / float(count + 1u);
+    else
+        reaches[slot] = sqrt(dot3(way, way));
+}

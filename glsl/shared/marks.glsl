@@ -1,0 +1,26 @@
+// marks: what becomes of each ray of a wave, a bit each; lists are made of them (list_marked.comp).
+//
+// Whoever includes this reads `params` of a wave.
+#ifndef MARKS_GLSL
+#define MARKS_GLSL
+#include "layout.glsl"
+
+layout(std430, binding = WAVE_LIT) buffer Lit { uint lit[]; };
+layout(std430, binding = WAVE_SCATTERING) buffer Scattering { uint scattering[]; };
+layout(std430, binding = WAVE_NEXT_MARKS) buffer NextMarks { uvec2 next_marks[]; };
+
+// A hit on a diffuse surface.
+void mark_lit(uint ray) {
+    atomicOr(lit[ray / 32u], 1u << (ray & 31u));
+}
+
+// One on another, and how many rays of the next wave it makes: none, one or three.
+void mark_scattering(uint ray, uint count) {
+    uint bit = 1u << (ray & 31u);
+    atomicOr(scattering[ray / 32u], bit);
+    if (count > 0u) atomicOr(next_marks[ray / 32u].x, bit);
+    if (scene_has(SCENE_DISPERSES)) {
+        if (count > 1u) atomicOr(next_marks[ray / 32u].y, bit);
+    }
+}
+#endif

@@ -1,0 +1,12 @@
+// scene: what a scene has need of. A constant of the pipeline: lavapipe runs both sides of an `if` for every ray,
+// and so does a GPU where rays differ.
+#ifndef SCENE_GLSL
+#define SCENE_GLSL
+#include "layout.glsl"
+
+layout(constant_id = 0) const uint SCENE = 0xffffffffu;
+
+bool scene_has(uint what) {
+    return (SCENE & what) != 0u;
+}
+#endif
