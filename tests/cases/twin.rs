@@ -2,10 +2,10 @@
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use harness::{
-    Bench, Rendered, assert_same_bits, assert_same_film, fibonacci_sphere, grid_points, plan_of,
-    random, render_twin, set_of, wavy_sheet,
+    Bench, Rendered, assert_same_bits, assert_same_bits_unless_flushed, assert_same_film,
+    fibonacci_sphere, grid_points, plan_of, random, render_twin, set_of, wavy_sheet,
 };
-use plan::{Diagnostic, RayLoop};
+use plan::{Diagnostic, Plan, RayLoop};
 use points::PointSet;
 
 const LIGHTS: &str = "
@@ -22,11 +22,16 @@ color = [0.1, 0.2, 0.3]
 ";
 
 fn check(name: &str, settings: &str, positions: Vec<[f64; 3]>) -> Rendered {
-    let mut plan = plan_of(&format!("{settings}\n{LIGHTS}"), &[set_of(positions)]);
-    plan.diagnostics = Diagnostic::ALL.to_vec();
+    let plan = lit(settings, positions);
     let on_device = Bench::open().render(&plan);
     assert_same_bits(name, &on_device, &render_twin(&plan));
     on_device
+}
+
+fn lit(settings: &str, positions: Vec<[f64; 3]>) -> Plan {
+    let mut plan = plan_of(&format!("{settings}\n{LIGHTS}"), &[set_of(positions)]);
+    plan.diagnostics = Diagnostic::ALL.to_vec();
+    plan
 }
 
 const SMALL: &str = "[image]\nsize = [160, 120]";
@@ -57,11 +62,16 @@ fn ties_and_random_spacing_are_the_same_to_the_bit() {
 
 #[test]
 fn given_feature_sizes_are_the_same_to_the_bit() {
-    for h in ["0.05", "0.001", "5.0", "\"smoothed\""] {
-        let settings =
-            format!("{SMALL}\n[[objects]]\npoints = \"s.ply\"\nsurface = {{ feature_size = {h} }}");
-        check(h, &settings, wavy_sheet(2_000));
+    let settings = |h: &str| {
+        format!("{SMALL}\n[[objects]]\npoints = \"s.ply\"\nsurface = {{ feature_size = {h} }}")
+    };
+    for h in ["0.05", "5.0", "\"smoothed\""] {
+        check(h, &settings(h), wavy_sheet(2_000));
     }
+    // Points are some ten h apart: what weights are multiplied to is below the least normal number.
+    let plan = lit(&settings("0.001"), wavy_sheet(2_000));
+    let on_device = Bench::open().render(&plan);
+    assert_same_bits_unless_flushed("h = 0.001", &on_device, &render_twin(&plan));
 }
 
 /// One point, two, a line, a plane, all points equal, a far outlier: whatever comes out, it is the
