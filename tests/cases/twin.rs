@@ -241,7 +241,7 @@ fn a_cell_with_too_many_points_for_one_pass_is_finished_in_the_next() {
 /// A large grid, whose empty cells say how far they are from others: camera rays, and those towards lights.
 #[test]
 fn rays_that_leave_empty_cells_together_are_the_same_to_the_bit() {
-    let mut plan = plan_of(&format!("{SMALL}\n{LIGHTS}"), &[set_of(fibonacci_sphere(10_000))]);
+    let mut plan = plan_of(&format!("{SMALL}\n{LIGHTS}"), &[set_of(fibonacci_sphere(30_000))]);
     let stepping = Bench::open().render(&plan);
     plan.grid_resolution = 80;
     plan.diagnostics = Diagnostic::ALL.to_vec();
