@@ -13,8 +13,8 @@
 //
 // A ray keeps the nearest hit over all points it tested, whatever cell the hit lies in, and ends
 // where that hit is no farther than the exit of its cell, or where it leaves the grid. K = 1 is the
-// paper's loop; cells without points do not count. Any K gives the same bits: a pass can end after any cell, and, so that no dispatch
-// runs away, after any 32 points of one; cell and cursor say where to go on.
+// paper's loop; cells without points do not count. Any K gives the same bits: a pass can end after any
+// cell, and, so that no dispatch runs away, after any 32 points of one; cell and cursor say where to go on.
 // With LEAVES, rays start on surfaces, whose own sheet they do not meet again at once, and may end at
 // any hit: those towards lights. Light for the points of a volume passes the surface of its own object.
 #version 460
@@ -115,7 +115,7 @@ void main() {
         }
         ray.tests += end - next;
         next = end;
-        work_left -= min(work_left, (end - first) / 4u + solved + 2u);
+        work_left -= min(work_left, (end - first + 3u) / 4u + solved + 2u);
 
 #ifdef LEAVES
         bool stops = params.any_hit != 0u && ray.hit_slot != NONE;

@@ -103,7 +103,7 @@ void walk_discs(inout Ray ray, uvec2 range, DepthRanks ranks, uint work) {
         }
         ray.tests += end - next;
         next = end;
-        work_left -= min(work_left, (end - first) / 4u + solved + 2u);
+        work_left -= min(work_left, (end - first + 3u) / 4u + solved + 2u);
         bool more = next < range.y;
         uint rank = disc_key_at(more ? next : range.x) & rank_mask;
         alive = more && rank <= depth_rank(ranks, ray.hit_t);

@@ -288,8 +288,8 @@ pub(crate) static RENDER: Table = Table {
             Kind::Choice(&["images", "queue", "auto"]),
             Value("\"auto\""),
             "Where the ray state lives: four images that are read and four that are written, as in the paper, or a \
-             queue in a buffer, in place, which \"auto\" takes where texel buffers are long enough. Changes no \
-             pixel.",
+             queue in a buffer, in place, which \"auto\" takes. A device whose texel buffers are too short for a \
+             queue takes images. Changes no pixel.",
         ),
         key("seed", count(0, u32::MAX as i64, ""), Value("0"), "Seed of all that is random."),
         key(

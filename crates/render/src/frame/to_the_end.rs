@@ -12,7 +12,7 @@ const ENDED_SHARE: u32 = 4;
 
 impl Renderer {
     /// Passes until no ray lives: the paper's loop on the CPU. Of the wave's rays, `alive` are known to live
-    /// at first. Once few do, passes are over a list of them.
+    /// at first. Once a quarter has ended, passes are over a list of the others.
     pub(super) fn trace_to_the_end(
         &mut self,
         plan: &Plan,
