@@ -6,21 +6,34 @@
 #![forbid(unsafe_code)]
 
 mod cloud;
+#[allow(dead_code, reason = "for readers to come")]
+mod collect;
 #[cfg(feature = "device")]
 pub mod device;
+mod error;
+#[allow(dead_code, reason = "for readers to come")]
+mod field;
+mod filter;
+mod format;
 mod grid;
 pub mod neighbors;
+mod options;
 mod ply;
 mod read;
 mod rims;
 mod set;
+#[allow(dead_code, reason = "for readers to come")]
+mod source;
 mod summary;
 mod watch;
 
 pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange, bounds_of};
+pub use error::PointsError;
+pub use filter::Filter;
 pub use grid::{BALL_MARGIN, plan_grid, skips_cells};
 pub use neighbors::NeighborSearch;
-pub use read::{PointsError, read};
+pub use options::{ReadOptions, Wanted};
+pub use read::{read, read_bytes, read_with};
 pub use rims::Rims;
 pub use set::{Attribute, ColorEncoding, PointSet, Values};
 pub use summary::{Dropped, PointSummary, Range};

@@ -29,6 +29,15 @@ pub struct PointSummary {
 pub struct Dropped {
     /// For a coordinate that is infinite or not a number.
     pub non_finite: u64,
+    /// Because the file itself calls them invalid.
+    pub invalid: u64,
+}
+
+impl Dropped {
+    /// In all.
+    pub fn count(self) -> u64 {
+        self.non_finite + self.invalid
+    }
 }
 
 /// Smallest and largest of some values, of those that are numbers; `None` if none is.
@@ -59,7 +68,7 @@ impl PointSummary {
         Self {
             format: set.format.clone(),
             points: set.len() as u64,
-            dropped: Dropped { non_finite: set.non_finite },
+            dropped: Dropped { non_finite: set.non_finite, invalid: set.invalid },
             min,
             max,
             attributes,
@@ -69,10 +78,13 @@ impl PointSummary {
 
     /// The summary as `pointillist info --json` prints it. What JSON has no number for is `null`.
     pub fn to_json(&self) -> Value {
-        let mut reasons = Map::new();
-        if self.dropped.non_finite > 0 {
-            reasons.insert("non-finite position".to_owned(), json!(self.dropped.non_finite));
-        }
+        let Dropped { non_finite, invalid } = self.dropped;
+        let reasons: Map<String, Value> =
+            [("non-finite position", non_finite), ("invalid", invalid)]
+                .into_iter()
+                .filter(|&(_, count)| count > 0)
+                .map(|(reason, count)| (reason.to_owned(), json!(count)))
+                .collect();
         let attributes: Map<String, Value> = self
             .attributes
             .iter()
@@ -85,7 +97,7 @@ impl PointSummary {
         json!({
             "format": self.format,
             "points": self.points,
-            "dropped": { "count": self.dropped.non_finite, "reasons": reasons },
+            "dropped": { "count": self.dropped.count(), "reasons": reasons },
             "bounds": { "min": self.min, "max": self.max },
             "attributes": attributes,
             "spacing": self.spacing,
@@ -164,9 +176,12 @@ impl fmt::Display for PointSummary {
         let corner = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
         writeln!(f, "format   {}", self.format)?;
         writeln!(f, "points   {}", self.points)?;
-        let dropped = self.dropped.non_finite;
-        if dropped > 0 {
-            writeln!(f, "dropped  {dropped} (position infinite or not a number)")?;
+        let Dropped { non_finite, invalid } = self.dropped;
+        if non_finite > 0 {
+            writeln!(f, "dropped  {non_finite} (position infinite or not a number)")?;
+        }
+        if invalid > 0 {
+            writeln!(f, "dropped  {invalid} (marked invalid in the file)")?;
         }
         writeln!(f, "min      {}", corner(self.min))?;
         writeln!(f, "max      {}", corner(self.max))?;
@@ -216,6 +231,7 @@ mod tests {
             ],
             non_finite: 1,
             format: "PLY 1.0, ascii".to_owned(),
+            ..PointSet::default()
         }
     }
 

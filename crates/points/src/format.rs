@@ -1,0 +1,45 @@
+//! The list of formats.
+
+use crate::error::PointsError;
+use crate::options::ReadOptions;
+use crate::ply;
+use crate::set::PointSet;
+use crate::source::Source;
+use std::path::Path;
+
+/// A format that points are read from.
+pub(crate) struct Format {
+    /// As messages call it.
+    pub(crate) name: &'static str,
+    /// Of its files, in lower case.
+    pub(crate) extensions: &'static [&'static str],
+    /// Whether a file may be one, by its first few kilobytes.
+    pub(crate) sniff: fn(&[u8]) -> bool,
+    /// Reads the points. The path is for messages alone.
+    pub(crate) read: fn(Source<'_>, &Path, &ReadOptions) -> Result<PointSet, PointsError>,
+}
+
+/// All formats; those whose beginning is a clear sign stand before those that are told by the look
+/// of their lines.
+pub(crate) static FORMATS: &[Format] =
+    &[Format { name: "PLY", extensions: &["ply"], sniff: ply::sniff, read: ply::read }];
+
+/// What a file with this beginning is read as: the first format that its contents look like, of
+/// several the one with its extension; where they look like none, that with its extension, whose
+/// reader says what is wrong.
+pub(crate) fn of(start: &[u8], path: &Path) -> Option<&'static Format> {
+    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    let called_so = |format: &&Format| {
+        extension.as_deref().is_some_and(|extension| format.extensions.contains(&extension))
+    };
+    let looks_so = || FORMATS.iter().filter(|format| (format.sniff)(start));
+    looks_so()
+        .find(called_so)
+        .or_else(|| looks_so().next())
+        .or_else(|| FORMATS.iter().find(called_so))
+}
+
+/// Names of all formats, for messages.
+pub(crate) fn names() -> String {
+    FORMATS.iter().map(|format| format.name).collect::<Vec<_>>().join(", ")
+}
