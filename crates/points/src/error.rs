@@ -3,7 +3,7 @@
 use crate::format;
 use std::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why a point file gave no points.
 #[derive(Debug, thiserror::Error)]
@@ -74,7 +74,7 @@ pub enum PointsError {
         /// What it says: `the point record length in the header`.
         place: Box<str>,
         /// What stands there.
-        found: String,
+        found: Box<str>,
         /// What should stand there.
         expected: String,
         /// What to do.
@@ -166,6 +166,24 @@ pub enum PointsError {
 }
 
 impl PointsError {
+    /// What a number or name in the file says, and what it should say.
+    #[allow(dead_code, reason = "for readers to come")]
+    pub(crate) fn wrong(
+        path: &Path,
+        place: &str,
+        found: impl fmt::Display,
+        expected: &str,
+        help: &'static str,
+    ) -> Self {
+        Self::Wrong {
+            path: path.into(),
+            place: place.into(),
+            found: found.to_string().into(),
+            expected: expected.to_owned(),
+            help,
+        }
+    }
+
     /// Whether the machine, not the file, is at fault.
     pub fn is_out_of_memory(&self) -> bool {
         match self {
