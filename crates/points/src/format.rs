@@ -5,6 +5,7 @@ use crate::options::ReadOptions;
 use crate::ply;
 use crate::set::PointSet;
 use crate::source::Source;
+use crate::text;
 use std::path::Path;
 
 /// A format that points are read from.
@@ -21,8 +22,15 @@ pub(crate) struct Format {
 
 /// All formats; those whose beginning is a clear sign stand before those that are told by the look
 /// of their lines.
-pub(crate) static FORMATS: &[Format] =
-    &[Format { name: "PLY", extensions: &["ply"], sniff: ply::sniff, read: ply::read }];
+pub(crate) static FORMATS: &[Format] = &[
+    Format { name: "PLY", extensions: &["ply"], sniff: ply::sniff, read: ply::read },
+    Format {
+        name: "text",
+        extensions: &["xyz", "pts", "csv", "tsv", "txt", "asc", "dat"],
+        sniff: text::sniff,
+        read: text::read,
+    },
+];
 
 /// What a file with this beginning is read as: the first format that its contents look like, of
 /// several the one with its extension; where they look like none, that with its extension, whose

@@ -16,6 +16,7 @@ mod field;
 mod filter;
 mod format;
 mod grid;
+mod meaning;
 pub mod neighbors;
 mod options;
 mod ply;
@@ -25,6 +26,7 @@ mod set;
 #[allow(dead_code, reason = "for readers to come")]
 mod source;
 mod summary;
+mod text;
 mod watch;
 
 pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange, bounds_of};
