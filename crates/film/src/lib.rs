@@ -13,6 +13,7 @@ mod exr_read;
 mod exr_write;
 mod image_read;
 mod picture;
+mod plausible;
 mod raster_read;
 mod srgb;
 mod store;

@@ -58,6 +58,9 @@ fn replace(target: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) ->
         .prefix(".pointillist-")
         .make_in(folder_of(target), |path| options.open(path))?;
     file.as_file_mut().write_all(bytes)?;
+    // Disks across a network say only here that they are full, and a machine that loses power must not
+    // find the new name on an empty file.
+    file.as_file().sync_data()?;
     if let Some(permissions) = permissions {
         file.as_file().set_permissions(permissions)?;
     }
