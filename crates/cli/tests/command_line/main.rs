@@ -1,10 +1,15 @@
-//! The binary from outside: what it prints, writes and exits with. No Vulkan device is needed.
+//! The binary from outside: what it prints, writes and exits with. `drivers` and `faults` need a Vulkan device,
+//! the others none.
 #![forbid(unsafe_code)]
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod bench;
 mod compare;
+mod disk;
+mod drivers;
+mod faults;
 mod headers;
+mod inputs;
 mod inspect;
 mod render;
 mod signals;
