@@ -1,6 +1,7 @@
 //! The list of formats.
 
 use crate::error::PointsError;
+use crate::npy;
 use crate::options::ReadOptions;
 use crate::ply;
 use crate::set::PointSet;
@@ -24,6 +25,13 @@ pub(crate) struct Format {
 /// of their lines.
 pub(crate) static FORMATS: &[Format] = &[
     Format { name: "PLY", extensions: &["ply"], sniff: ply::sniff, read: ply::read },
+    Format { name: "NPY", extensions: &["npy"], sniff: npy::sniff, read: npy::read },
+    Format {
+        name: "NPZ",
+        extensions: &["npz"],
+        sniff: npy::sniff_archive,
+        read: npy::read_archive,
+    },
     Format {
         name: "text",
         extensions: &["xyz", "pts", "csv", "tsv", "txt", "asc", "dat"],

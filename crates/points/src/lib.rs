@@ -8,6 +8,7 @@
 mod cloud;
 #[allow(dead_code, reason = "for readers to come")]
 mod collect;
+mod columns;
 #[cfg(feature = "device")]
 pub mod device;
 mod error;
@@ -18,6 +19,7 @@ mod format;
 mod grid;
 mod meaning;
 pub mod neighbors;
+mod npy;
 mod options;
 mod ply;
 mod read;

@@ -183,7 +183,7 @@ pub(super) fn find(start: &[u8], whole: bool, path: &Path) -> Result<Layout, Poi
             let names: Vec<_> = numbers.iter().map(|&place| names.names[place].clone()).collect();
             meaning::by_names(&names, None, &sample)
         }
-        None if numbers.len() >= 3 => meaning::by_place(&sample),
+        None if numbers.len() >= 3 => meaning::by_place(&sample, None),
         None => {
             let expected = "3 numbers or more: x y z".to_owned();
             return Err(wrong(first.line, Quoted(first.text).to_string(), expected, HELP));
