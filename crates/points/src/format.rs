@@ -2,6 +2,8 @@
 
 use crate::error::PointsError;
 use crate::npy;
+use crate::obj;
+use crate::off;
 use crate::options::ReadOptions;
 use crate::ply;
 use crate::set::PointSet;
@@ -32,6 +34,13 @@ pub(crate) static FORMATS: &[Format] = &[
         sniff: npy::sniff_archive,
         read: npy::read_archive,
     },
+    Format {
+        name: "OFF",
+        extensions: &["off", "coff", "noff"],
+        sniff: off::sniff,
+        read: off::read,
+    },
+    Format { name: "OBJ", extensions: &["obj"], sniff: obj::sniff, read: obj::read },
     Format {
         name: "text",
         extensions: &["xyz", "pts", "csv", "tsv", "txt", "asc", "dat"],

@@ -158,7 +158,7 @@ pub(crate) fn read(
     let from: Vec<&str> = chosen.iter().map(|&place| &*entries[place].member.name).collect();
     let left_out = match left_out.as_slice() {
         [] => String::new(),
-        [some @ ..] if some.len() > 8 => format!("; left out: {} arrays", some.len()),
+        _ if left_out.len() > 8 => format!("; left out: {} arrays", left_out.len()),
         some => format!("; left out: {}", some.join(" ")),
     };
     collector.finish(&format!("NPZ, positions from {}{left_out}", from.join(" ")))
@@ -197,10 +197,11 @@ fn choose(entries: &[Entry<'_>], path: &Path) -> Result<(u64, Vec<usize>), Point
     }
     let names: Vec<&str> = entries.iter().map(|entry| &*entry.member.name).collect();
     let single = |place: &usize| entries[*place].rows.names.len() == 1;
-    if let Some(axes) = meaning::positions_among(&names) {
-        if axes.iter().all(single) && axes.iter().all(|&axis| points(axis) == points(axes[0])) {
-            return Ok((points(axes[0]), axes.into()));
-        }
+    let alike = |axes: &[usize; 3]| {
+        axes.iter().all(single) && axes.iter().all(|&axis| points(axis) == points(axes[0]))
+    };
+    if let Some(axes) = meaning::positions_among(&names).filter(alike) {
+        return Ok((points(axes[0]), axes.into()));
     }
     match fit.as_slice() {
         [one] => Ok((points(*one), vec![*one])),
