@@ -2,9 +2,9 @@
 
 use crate::error::PointsError;
 use crate::options::ReadOptions;
-use crate::ply;
 use crate::set::PointSet;
 use crate::source::Source;
+use crate::{e57, las, pcd, ply};
 use std::path::Path;
 
 /// A format that points are read from.
@@ -21,8 +21,12 @@ pub(crate) struct Format {
 
 /// All formats; those whose beginning is a clear sign stand before those that are told by the look
 /// of their lines.
-pub(crate) static FORMATS: &[Format] =
-    &[Format { name: "PLY", extensions: &["ply"], sniff: ply::sniff, read: ply::read }];
+pub(crate) static FORMATS: &[Format] = &[
+    Format { name: "PLY", extensions: &["ply"], sniff: ply::sniff, read: ply::read },
+    Format { name: "LAS", extensions: &["las", "laz"], sniff: las::sniff, read: las::read },
+    Format { name: "E57", extensions: &["e57"], sniff: e57::sniff, read: e57::read },
+    Format { name: "PCD", extensions: &["pcd"], sniff: pcd::sniff, read: pcd::read },
+];
 
 /// What a file with this beginning is read as: the first format that its contents look like, of
 /// several the one with its extension; where they look like none, that with its extension, whose

@@ -6,23 +6,24 @@
 #![forbid(unsafe_code)]
 
 mod cloud;
-#[allow(dead_code, reason = "for readers to come")]
 mod collect;
 #[cfg(feature = "device")]
 pub mod device;
+mod e57;
 mod error;
-#[allow(dead_code, reason = "for readers to come")]
 mod field;
 mod filter;
 mod format;
 mod grid;
+mod guard;
+mod las;
 pub mod neighbors;
 mod options;
+mod pcd;
 mod ply;
 mod read;
 mod rims;
 mod set;
-#[allow(dead_code, reason = "for readers to come")]
 mod source;
 mod summary;
 mod watch;
