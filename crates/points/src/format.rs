@@ -4,7 +4,7 @@ use crate::error::PointsError;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
-use crate::{e57, las, pcd, ply};
+use crate::{e57, las, pcd, ply, text};
 use std::path::Path;
 
 /// A format that points are read from.
@@ -26,6 +26,12 @@ pub(crate) static FORMATS: &[Format] = &[
     Format { name: "LAS", extensions: &["las", "laz"], sniff: las::sniff, read: las::read },
     Format { name: "E57", extensions: &["e57"], sniff: e57::sniff, read: e57::read },
     Format { name: "PCD", extensions: &["pcd"], sniff: pcd::sniff, read: pcd::read },
+    Format {
+        name: "text",
+        extensions: &["xyz", "pts", "csv", "tsv", "txt", "asc", "dat"],
+        sniff: text::sniff,
+        read: text::read,
+    },
 ];
 
 /// What a file with this beginning is read as: the first format that its contents look like, of

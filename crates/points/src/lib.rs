@@ -17,6 +17,7 @@ mod format;
 mod grid;
 mod guard;
 mod las;
+mod meaning;
 pub mod neighbors;
 mod options;
 mod pcd;
@@ -26,6 +27,7 @@ mod rims;
 mod set;
 mod source;
 mod summary;
+mod text;
 mod watch;
 
 pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange, bounds_of};
