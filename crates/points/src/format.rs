@@ -1,14 +1,10 @@
 //! The list of formats.
 
 use crate::error::PointsError;
-use crate::npy;
-use crate::obj;
-use crate::off;
 use crate::options::ReadOptions;
-use crate::ply;
 use crate::set::PointSet;
 use crate::source::Source;
-use crate::text;
+use crate::{e57, las, npy, obj, off, pcd, ply, text};
 use std::path::Path;
 
 /// A format that points are read from.
@@ -27,6 +23,9 @@ pub(crate) struct Format {
 /// of their lines.
 pub(crate) static FORMATS: &[Format] = &[
     Format { name: "PLY", extensions: &["ply"], sniff: ply::sniff, read: ply::read },
+    Format { name: "LAS", extensions: &["las", "laz"], sniff: las::sniff, read: las::read },
+    Format { name: "E57", extensions: &["e57"], sniff: e57::sniff, read: e57::read },
+    Format { name: "PCD", extensions: &["pcd"], sniff: pcd::sniff, read: pcd::read },
     Format { name: "NPY", extensions: &["npy"], sniff: npy::sniff, read: npy::read },
     Format {
         name: "NPZ",
