@@ -200,6 +200,9 @@ impl<'a> Collector<'a> {
     }
 
     /// The set, which must not be empty. `format` is the file format in words.
+    ///
+    /// Colours of 16 bits of which none is over 255 are taken for colours of 8; if all are 0, nobody
+    /// wrote colours into the fields that the format has for them.
     pub(crate) fn finish(self, format: &str) -> Result<PointSet, PointsError> {
         let mut set = self.set;
         if set.positions.is_empty() {
@@ -215,10 +218,14 @@ impl<'a> Collector<'a> {
             });
         }
         if let (Some(color), Some(colors)) = (&self.color, &mut set.colors)
-            && color.holds_bytes()
+            && color.encoding == ColorEncoding::Srgb16
         {
-            color.as_bytes(colors);
-            set.color_encoding = Some(ColorEncoding::Srgb8);
+            if color.greatest == 0.0 {
+                (set.colors, set.color_encoding) = (None, None);
+            } else if color.greatest <= 255.0 {
+                color.as_bytes(colors);
+                set.color_encoding = Some(ColorEncoding::Srgb8);
+            }
         }
         set.format = format.to_owned();
         Ok(set)
@@ -285,12 +292,7 @@ impl Color {
         }
     }
 
-    /// Whether fields of 16 bits hold numbers of 8, as those of many LAS files do.
-    fn holds_bytes(&self) -> bool {
-        self.encoding == ColorEncoding::Srgb16 && self.greatest <= 255.0
-    }
-
-    /// Corrects colours that were taken for numbers of 16 bits.
+    /// Corrects colours that were taken for numbers of 16 bits, but are of 8, as in many LAS files.
     fn as_bytes(&self, colors: &mut [[f32; 3]]) {
         let bytes = &self.table[..256];
         let linear: Vec<f32> =
@@ -392,6 +394,8 @@ mod tests {
             assert_eq!(set.color_encoding, Some(ColorEncoding::Srgb16));
             assert_eq!(set.colors.unwrap()[0][0], ColorEncoding::Srgb16.decode(236.0));
         }
+        let black = collect(&fields, &[&[0.0; 6]], &ReadOptions::default()).unwrap();
+        assert_eq!((black.colors, black.color_encoding), (None, None));
     }
 
     #[test]

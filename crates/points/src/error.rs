@@ -167,7 +167,6 @@ pub enum PointsError {
 
 impl PointsError {
     /// What a number or name in the file says, and what it should say.
-    #[allow(dead_code, reason = "for readers to come")]
     pub(crate) fn wrong(
         path: &Path,
         place: &str,

@@ -6,24 +6,31 @@
 #![forbid(unsafe_code)]
 
 mod cloud;
-#[allow(dead_code, reason = "for readers to come")]
 mod collect;
+mod columns;
 #[cfg(feature = "device")]
 pub mod device;
+mod e57;
 mod error;
-#[allow(dead_code, reason = "for readers to come")]
 mod field;
 mod filter;
 mod format;
 mod grid;
+mod guard;
+mod las;
+mod lines;
 mod meaning;
 pub mod neighbors;
+mod npy;
+mod number;
+mod obj;
+mod off;
 mod options;
+mod pcd;
 mod ply;
 mod read;
 mod rims;
 mod set;
-#[allow(dead_code, reason = "for readers to come")]
 mod source;
 mod summary;
 mod text;

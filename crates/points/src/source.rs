@@ -71,11 +71,6 @@ impl<'a> Source<'a> {
         Self { file, length, progress, buffer, start: 0, end: 0, read: 0 }
     }
 
-    /// The file's length where it is known.
-    pub(crate) fn length(&self) -> Option<u64> {
-        self.length
-    }
-
     /// The whole file, to be read from any place, whatever was consumed of it.
     pub(crate) fn seekable(mut self) -> io::Result<Seekable<'a>> {
         let (file, length): (Box<dyn ReadSeek + 'a>, u64) = match self.file {
