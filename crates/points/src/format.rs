@@ -4,7 +4,7 @@ use crate::error::PointsError;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
-use crate::{e57, las, pcd, ply, text};
+use crate::{e57, las, npy, obj, off, pcd, ply, text};
 use std::path::Path;
 
 /// A format that points are read from.
@@ -26,6 +26,20 @@ pub(crate) static FORMATS: &[Format] = &[
     Format { name: "LAS", extensions: &["las", "laz"], sniff: las::sniff, read: las::read },
     Format { name: "E57", extensions: &["e57"], sniff: e57::sniff, read: e57::read },
     Format { name: "PCD", extensions: &["pcd"], sniff: pcd::sniff, read: pcd::read },
+    Format { name: "NPY", extensions: &["npy"], sniff: npy::sniff, read: npy::read },
+    Format {
+        name: "NPZ",
+        extensions: &["npz"],
+        sniff: npy::sniff_archive,
+        read: npy::read_archive,
+    },
+    Format {
+        name: "OFF",
+        extensions: &["off", "coff", "noff"],
+        sniff: off::sniff,
+        read: off::read,
+    },
+    Format { name: "OBJ", extensions: &["obj"], sniff: obj::sniff, read: obj::read },
     Format {
         name: "text",
         extensions: &["xyz", "pts", "csv", "tsv", "txt", "asc", "dat"],

@@ -7,6 +7,7 @@
 
 mod cloud;
 mod collect;
+mod columns;
 #[cfg(feature = "device")]
 pub mod device;
 mod e57;
@@ -17,8 +18,13 @@ mod format;
 mod grid;
 mod guard;
 mod las;
+mod lines;
 mod meaning;
 pub mod neighbors;
+mod npy;
+mod number;
+mod obj;
+mod off;
 mod options;
 mod pcd;
 mod ply;

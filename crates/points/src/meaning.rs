@@ -93,6 +93,27 @@ const OTHERS: [(&str, &[&str]); 2] = [
     ("classification", &["classification", "scalar_classification", "class"]),
 ];
 
+/// Names of arrays of positions, of colours and of normals.
+const POSITIONS: [&str; 14] = [
+    "xyz",
+    "points",
+    "positions",
+    "position",
+    "pos",
+    "point",
+    "coords",
+    "coordinates",
+    "coord",
+    "location",
+    "locations",
+    "vertices",
+    "vertex",
+    "pts",
+];
+const COLORS: [&str; 9] =
+    ["rgb", "rgba", "colors", "color", "colours", "colour", "rgbs", "vertex_colors", "diffuse"];
+const NORMALS: [&str; 4] = ["normals", "normal", "norms", "vertex_normals"];
+
 const RED: [&str; 3] = ["red", "green", "blue"];
 const NX: [&str; 3] = ["nx", "ny", "nz"];
 
@@ -172,6 +193,36 @@ enum Triple {
     Normal,
 }
 
+/// Names for the numbers of an array with several a point: those of x y z, of a colour or of a
+/// normal where its name says that; else its name and a number from 0 on, or its name alone.
+pub(crate) fn spread(name: &str, width: usize) -> Vec<String> {
+    let plain = plain(name);
+    let is = |names: &[&str]| names.contains(&plain.as_str());
+    let names: &[&str] = match width {
+        1 => &[name],
+        3 if is(&POSITIONS) => &["x", "y", "z"],
+        3 if is(&COLORS) => &RED,
+        4 if is(&COLORS) => &["red", "green", "blue", "alpha"],
+        3 if is(&NORMALS) => &NX,
+        _ => return (0..width).map(|number| format!("{name}_{number}")).collect(),
+    };
+    names.iter().map(|&name| name.to_owned()).collect()
+}
+
+/// Whether an array of this name holds positions.
+pub(crate) fn is_position(name: &str) -> bool {
+    POSITIONS.contains(&plain(name).as_str())
+}
+
+/// The places of x, y and z among these names.
+pub(crate) fn positions_among(names: &[&str]) -> Option<[usize; 3]> {
+    let plain: Vec<String> = names.iter().map(|name| plain(name)).collect();
+    let place =
+        |axis: &[&str]| axis.iter().find_map(|name| plain.iter().position(|other| other == name));
+    let [x, y, z] = POSITION;
+    Some([place(x)?, place(y)?, place(z)?])
+}
+
 /// Columns by their names. `kinds` are their types where the file states them; what is not stated
 /// is found from the sample.
 pub(crate) fn by_names(names: &[String], kinds: Option<&[Type]>, sample: &Sample) -> Vec<Field> {
@@ -179,27 +230,33 @@ pub(crate) fn by_names(names: &[String], kinds: Option<&[Type]>, sample: &Sample
     let find = |name: &str| plain.iter().position(|other| other == name);
     let stated = |place: usize| kinds.map(|kinds| kinds[place]);
     let mut fields: Vec<Option<Field>> = vec![None; names.len()];
-    let mut set = |place: usize, name: &str, kind: Type| {
-        if fields[place].is_none() {
-            fields[place] = Some(Field::new(name, stated(place).unwrap_or(kind)));
-        }
+    let set = |fields: &mut [Option<Field>], place: usize, name: &str, kind: Type| {
+        let kind = stated(place).unwrap_or(kind);
+        fields[place].get_or_insert_with(|| Field::new(name, kind));
     };
     for (axis, names) in ["x", "y", "z"].into_iter().zip(POSITION) {
         if let Some(place) = names.iter().find_map(|name| find(name)) {
-            set(place, axis, Type::F64);
+            set(&mut fields, place, axis, Type::F64);
         }
     }
-    for (sets, canonical) in [(&COLOR[..], RED), (&NORMAL[..], NX)] {
-        let found = sets.iter().find_map(|[a, b, c]| Some([find(a)?, find(b)?, find(c)?]));
-        let Some(places) = found else { continue };
-        let kind = if canonical == RED { sample.color_kind(places) } else { Type::F32 };
-        for (place, name) in places.into_iter().zip(canonical) {
-            set(place, name, kind);
+    let triple =
+        |sets: &[[&str; 3]]| sets.iter().find_map(|[a, b, c]| Some([find(a)?, find(b)?, find(c)?]));
+    if let Some(places) = triple(&COLOR) {
+        // Floats may hold bytes.
+        let whole = places.into_iter().filter_map(stated).find(|kind| !kind.is_float());
+        let kind = whole.unwrap_or_else(|| sample.color_kind(places));
+        for (place, name) in places.into_iter().zip(RED) {
+            fields[place].get_or_insert_with(|| Field::new(name, kind));
+        }
+    }
+    if let Some(places) = triple(&NORMAL) {
+        for (place, name) in places.into_iter().zip(NX) {
+            set(&mut fields, place, name, Type::F32);
         }
     }
     for (canonical, names) in OTHERS {
         if let Some(place) = names.iter().find_map(|name| find(name)) {
-            set(place, canonical, Type::F64);
+            set(&mut fields, place, canonical, Type::F64);
         }
     }
     let rest = fields.into_iter().enumerate().map(|(place, field)| {
@@ -226,10 +283,14 @@ pub(crate) fn by_names(names: &[String], kinds: Option<&[Type]>, sample: &Sample
 ///
 /// Three columns look like a normal if each row has length 1 (or 0); like a colour if they are
 /// whole numbers from 0 to 65535, or fractions from 0 to 1. All else is named `column_4` and so on.
-pub(crate) fn by_place(sample: &Sample) -> Vec<Field> {
-    let mut fields: Vec<Field> = ["x", "y", "z"].map(|name| Field::new(name, Type::F64)).into();
-    let column = |place: usize| Field::new(format!("column_{}", place + 1), Type::F64);
-    let intensity = || Field::new("intensity", Type::F64);
+///
+/// `kinds` are the columns' types where the file states them.
+pub(crate) fn by_place(sample: &Sample, kinds: Option<&[Type]>) -> Vec<Field> {
+    let kind = |place: usize| kinds.map_or(Type::F64, |kinds| kinds[place]);
+    let named = |place: usize, name: &str| Field::new(name, kind(place));
+    let column = |place: usize| named(place, &format!("column_{}", place + 1));
+    let names = ["x", "y", "z"].into_iter().enumerate();
+    let mut fields: Vec<Field> = names.map(|(place, name)| named(place, name)).collect();
     let triples = |places: &[usize]| -> Option<Vec<Field>> {
         let found: Vec<_> = places.iter().map(|&p| sample.triple(p)).collect::<Option<_>>()?;
         let normals = found.iter().filter(|&&triple| triple == Triple::Normal).count();
@@ -243,13 +304,15 @@ pub(crate) fn by_place(sample: &Sample) -> Vec<Field> {
         Some(fields.collect())
     };
     let rest = match sample.columns {
-        4 => Some(vec![intensity()]),
+        4 => Some(vec![named(3, "intensity")]),
         6 => triples(&[3]),
         9 => triples(&[3, 6]),
         7 | 10 => {
             let places = |first: usize| (first..sample.columns - 2).step_by(3).collect::<Vec<_>>();
-            let after = triples(&places(4)).map(|rest| [vec![intensity()], rest].concat());
-            after.or_else(|| triples(&places(3)).map(|rest| [rest, vec![intensity()]].concat()))
+            let intensity = |place| vec![named(place, "intensity")];
+            let after = triples(&places(4)).map(|rest| [intensity(3), rest].concat());
+            let last = sample.columns - 1;
+            after.or_else(|| triples(&places(3)).map(|rest| [rest, intensity(last)].concat()))
         }
         _ => None,
     };
@@ -271,9 +334,8 @@ fn plain(name: &str) -> String {
 }
 
 /// Whether names for all of x, y and z are among these.
-pub(crate) fn name_positions<'a>(names: impl Iterator<Item = &'a str> + Clone) -> bool {
-    let names: Vec<String> = names.map(plain).collect();
-    POSITION.iter().all(|axis| names.iter().any(|name| axis.contains(&name.as_str())))
+pub(crate) fn name_positions<'a>(names: impl Iterator<Item = &'a str>) -> bool {
+    positions_among(&names.collect::<Vec<_>>()).is_some()
 }
 
 /// The fields as they are listed in a set's `format`.
@@ -297,7 +359,7 @@ mod tests {
     fn placed(row: &[f64], floats: bool) -> String {
         let sample =
             Sample { columns: row.len(), values: row.to_vec(), floats: vec![floats; row.len()] };
-        listed(&by_place(&sample))
+        listed(&by_place(&sample, None))
     }
 
     #[test]

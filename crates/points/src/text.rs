@@ -6,27 +6,21 @@
 //! points, not the text.
 
 mod layout;
-mod number;
 mod split;
 
 use crate::collect::Collector;
 use crate::error::{PointsError, Quoted};
+use crate::lines::{Lines, SAMPLE, values};
+use crate::number::number;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
-use crate::source::{Line, Source};
+use crate::source::Source;
 use crate::text::layout::Layout;
-use crate::text::number::number;
 use crate::text::split::{Separator, blanks, is_comment, quoted};
 use std::path::Path;
 
-/// How much of a file is looked at before it is read.
-const SAMPLE: usize = 1 << 20;
-/// Longest line.
-const MAX_LINE: usize = 1 << 20;
 /// A table of more columns is taken for something else.
 const MAX_COLUMNS: usize = 1000;
-
-const HELP: &str = "correct the line or export the file again";
 
 /// Whether a file that begins so is a table: its first line that is no comment has three numbers
 /// or more, or the line after it has and it could be their names.
@@ -49,14 +43,14 @@ pub(crate) fn read(
     // A line of the sample's average length, less a tenth.
     let least = (layout.bytes_per_row * 9 / 10).max(2 * layout.fields.len() as u64);
     collector.expect(source.records(u64::MAX, least).min(u32::MAX.into()))?;
-    let mut table = Table { layout: &layout, path, line: 0, rows: 0, declared: layout.declared };
-    table.rows(&mut source, &mut collector)?;
-    if table.declared.is_some_and(|declared| table.rows < declared) {
+    let mut rows = Rows { layout: &layout, found: 0, declared: layout.declared };
+    rows.read(Lines::new(&mut source, path)?, &mut collector)?;
+    if let Some(declared) = rows.declared.filter(|&declared| rows.found < declared) {
         return Err(PointsError::CutOff {
             path: path.into(),
             what: "points".to_owned(),
-            declared: table.declared.unwrap_or(0),
-            found: table.rows,
+            declared,
+            found: rows.found,
             bytes_declared: None,
             bytes_found: None,
         });
@@ -64,87 +58,54 @@ pub(crate) fn read(
     collector.finish(&layout.in_words)
 }
 
-struct Table<'a> {
+struct Rows<'a> {
     layout: &'a Layout,
-    path: &'a Path,
-    /// Lines read so far.
-    line: u64,
     /// Points read so far.
-    rows: u64,
+    found: u64,
     /// How many points the lines that count them declare, all together.
     declared: Option<u64>,
 }
 
-impl Table<'_> {
-    fn rows(
+impl Rows<'_> {
+    fn read(
         &mut self,
-        source: &mut Source<'_>,
+        mut lines: Lines<'_, '_>,
         collector: &mut Collector<'_>,
     ) -> Result<(), PointsError> {
-        let path = self.path;
-        let columns = self.layout.columns.len();
-        let mut row = Vec::with_capacity(self.layout.fields.len());
-        loop {
-            self.line += 1;
-            let line = match source.line(self.layout.line_end, MAX_LINE) {
-                Ok(Line::Whole(line)) => line,
-                Ok(Line::End) => return Ok(()),
-                Ok(Line::TooLong) => {
-                    let found = format!("more than {MAX_LINE} bytes");
-                    return Err(self.wrong(found, format!("{columns} values")));
-                }
-                Err(source) => return Err(PointsError::Io { path: path.into(), source }),
-            };
+        let layout = self.layout;
+        let mut row = Vec::with_capacity(layout.fields.len());
+        let mut number = 0;
+        while let Some(line) = lines.next()? {
+            number += 1;
             // Names and counts above the first point were understood already.
-            if self.line < self.layout.first_row || is_comment(line) {
+            if number < layout.first_row || is_comment(line) {
                 continue;
             }
-            let read = match self.layout.separator {
-                Separator::Blanks => row_of(blanks(line), self.layout, &mut row),
+            let read = match layout.separator {
+                Separator::Blanks => row_of(blanks(line), layout, &mut row),
                 Separator::Byte(byte) if line.contains(&b'"') => {
                     let words = quoted(line, |other| other == byte);
-                    row_of(words.into_iter(), self.layout, &mut row)
+                    row_of(words.into_iter(), layout, &mut row)
                 }
                 Separator::Byte(byte) => {
                     let words = line.split(move |&other| other == byte).map(<[u8]>::trim_ascii);
-                    row_of(words, self.layout, &mut row)
+                    row_of(words, layout, &mut row)
                 }
             };
             if let Err(wrong) = read {
                 // Several scans in one file, each with its count above.
-                if let (Some(declared), Some(count)) = (self.declared, layout::count_of(line)) {
+                if let Some((declared, count)) = self.declared.zip(layout::count_of(line)) {
                     self.declared = Some(declared.saturating_add(count));
                     continue;
                 }
-                let (found, expected) = self.describe(&wrong);
-                return Err(self.wrong(found, expected));
+                let (found, expected) = wrong.describe(layout);
+                return Err(lines.wrong(found, expected));
             }
             collector.push(&row)?;
-            self.rows += 1;
+            self.found += 1;
         }
+        Ok(())
     }
-
-    fn describe(&self, wrong: &Wrong) -> (String, String) {
-        let shape = || {
-            let first = self.layout.shape_line;
-            format!("{} as in line {first}", values(self.layout.columns.len()))
-        };
-        match wrong {
-            Wrong::Count(found) => (values(*found), shape()),
-            Wrong::Word { word, column } => {
-                let name = self.layout.name_of(*column);
-                (Quoted(word).to_string(), format!("a number for '{name}', column {}", column + 1))
-            }
-        }
-    }
-
-    fn wrong(&self, found: String, expected: String) -> PointsError {
-        PointsError::Line { path: self.path.into(), line: self.line, found, expected, help: HELP }
-    }
-}
-
-fn values(count: usize) -> String {
-    if count == 1 { "1 value".to_owned() } else { format!("{count} values") }
 }
 
 /// What is wrong with a line.
@@ -155,6 +116,22 @@ enum Wrong {
         word: Vec<u8>,
         column: usize,
     },
+}
+
+impl Wrong {
+    /// What was found, and what was expected.
+    fn describe(&self, layout: &Layout) -> (String, String) {
+        match self {
+            Self::Count(found) => {
+                let columns = values(layout.columns.len());
+                (values(*found), format!("{columns} as in line {}", layout.shape_line))
+            }
+            Self::Word { word, column } => {
+                let name = layout.name_of(*column);
+                (Quoted(word).to_string(), format!("a number for '{name}', column {}", column + 1))
+            }
+        }
+    }
 }
 
 /// The numbers of one line.

@@ -2,10 +2,11 @@
 
 use crate::error::{PointsError, Quoted};
 use crate::field::Field;
+use crate::lines::{HELP, line_end_of, values};
 use crate::meaning::{self, SAMPLE_ROWS, Sample};
-use crate::text::number::number;
+use crate::number::number;
+use crate::text::MAX_COLUMNS;
 use crate::text::split::{Separator, is_comment};
-use crate::text::{HELP, MAX_COLUMNS, values};
 use std::path::Path;
 
 /// What the lines of a table look like.
@@ -13,7 +14,6 @@ pub(super) struct Layout {
     pub(super) separator: Separator,
     /// Whether the decimal point is a comma.
     pub(super) comma: bool,
-    pub(super) line_end: u8,
     /// Bytes before the first line: a byte order mark.
     pub(super) mark: usize,
     /// Of each column, whether it is read. Columns of text are not.
@@ -79,10 +79,6 @@ fn is_text(bytes: &[u8]) -> bool {
 /// Bytes of a byte order mark.
 fn mark_of(start: &[u8]) -> usize {
     if start.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 }
-}
-
-fn line_end_of(start: &[u8]) -> u8 {
-    if !start.contains(&b'\n') && start.contains(&b'\r') { b'\r' } else { b'\n' }
 }
 
 /// The lines of these bytes; the last one only if `whole`, or if it is the only one.
@@ -183,7 +179,7 @@ pub(super) fn find(start: &[u8], whole: bool, path: &Path) -> Result<Layout, Poi
             let names: Vec<_> = numbers.iter().map(|&place| names.names[place].clone()).collect();
             meaning::by_names(&names, None, &sample)
         }
-        None if numbers.len() >= 3 => meaning::by_place(&sample),
+        None if numbers.len() >= 3 => meaning::by_place(&sample, None),
         None => {
             let expected = "3 numbers or more: x y z".to_owned();
             return Err(wrong(first.line, Quoted(first.text).to_string(), expected, HELP));
@@ -196,7 +192,6 @@ pub(super) fn find(start: &[u8], whole: bool, path: &Path) -> Result<Layout, Poi
     Ok(Layout {
         separator,
         comma,
-        line_end: line_end_of(start),
         mark,
         first_row: first.line,
         shape_line: names.as_ref().map_or(first.line, |names| names.line),

@@ -1,6 +1,6 @@
 //! Lines into words.
 
-use crate::text::number::number;
+use crate::number::number;
 use std::ops::Range;
 
 /// What stands between the values of a line.

@@ -1,11 +1,11 @@
-//! Numbers as tables have them.
+//! Numbers as text has them.
 
 /// Longest number with a decimal comma.
 const LONGEST: usize = 64;
 
 /// The number a word stands for. What stands for a missing one is NaN; `None` if the word is no
 /// number. With `comma`, the decimal point is a comma.
-pub(super) fn number(word: &[u8], comma: bool) -> Option<f64> {
+pub(crate) fn number(word: &[u8], comma: bool) -> Option<f64> {
     if comma && word.contains(&b',') {
         let mut copy = [0; LONGEST];
         let copy = copy.get_mut(..word.len())?;
