@@ -8,6 +8,7 @@ mod compare;
 mod disk;
 mod drivers;
 mod faults;
+mod filters;
 mod headers;
 mod inputs;
 mod inspect;
