@@ -1,5 +1,5 @@
-//! The binary from outside: what it prints, writes and exits with. `drivers` and `faults` need a Vulkan device,
-//! the others none.
+//! The binary from outside: what it prints, writes and exits with. `drivers`, `faults`, `signals` and `twins` need a
+//! Vulkan device, the others none.
 #![forbid(unsafe_code)]
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -14,6 +14,7 @@ mod inputs;
 mod inspect;
 mod render;
 mod signals;
+mod twins;
 mod usage;
 
 use std::ffi::OsStr;
