@@ -47,3 +47,22 @@ fn assert_told(error: &PointsError, name: &str) {
     assert!(message.len() < 2000, "{} bytes of message", message.len());
     assert!(message.starts_with(name), "the file is not named: {message}");
 }
+
+/// The bytes as an E57 file whose pages have the checksums that they should: without them every file that differs
+/// from a seed would be refused at once.
+#[must_use]
+pub fn with_checksums(bytes: &[u8]) -> Vec<u8> {
+    const PAGE: usize = 1024;
+    let mut file = bytes.to_vec();
+    for page in file.chunks_exact_mut(PAGE) {
+        let (data, checksum) = page.split_at_mut(PAGE - 4);
+        checksum.copy_from_slice(&crc32c(data).to_be_bytes());
+    }
+    file
+}
+
+/// CRC-32C, bit by bit.
+fn crc32c(bytes: &[u8]) -> u32 {
+    let step = |crc: u32| (crc >> 1) ^ (0x82f6_3b78 & (crc & 1).wrapping_neg());
+    !bytes.iter().fold(u32::MAX, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |crc, _| step(crc)))
+}
