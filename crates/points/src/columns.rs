@@ -17,6 +17,26 @@ const BLOCK: usize = 1 << 18;
 /// Bytes of a file that are read at once for one array.
 const BUFFER: usize = 1 << 16;
 
+/// Arrays that take more bytes than this take at most [`MAX_EXPANSION`] times the file's: beyond,
+/// the file is taken for one that was made to fill memory.
+const FREE_BYTES: u64 = 1 << 28;
+const MAX_EXPANSION: u64 = 100;
+
+/// Refuses packed arrays that are far larger than the file. `bytes` is their size unpacked,
+/// `length` the file's.
+pub(crate) fn check_expansion(path: &Path, bytes: u64, length: u64) -> Result<(), PointsError> {
+    if bytes <= FREE_BYTES || bytes / MAX_EXPANSION <= length {
+        return Ok(());
+    }
+    Err(PointsError::wrong(
+        path,
+        "the size of the unpacked arrays",
+        format!("{bytes} bytes"),
+        &format!("at most {MAX_EXPANSION} times the file's {length}"),
+        "save them without compression",
+    ))
+}
+
 /// A file that is read at several places.
 pub(crate) type Shared<'a> = RefCell<Seekable<'a>>;
 

@@ -34,6 +34,7 @@ mod set;
 mod source;
 mod summary;
 mod text;
+mod vtk;
 mod watch;
 
 pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange, bounds_of};
