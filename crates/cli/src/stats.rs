@@ -71,6 +71,8 @@ pub struct Row {
     pub points: u64,
     /// Points dropped from all objects.
     pub dropped: u64,
+    /// Points that the filters of all objects left out.
+    pub filtered_out: u64,
     /// How the fits ended.
     pub fits: Fits,
     /// The grid.
@@ -163,6 +165,8 @@ pub struct Measured<'a> {
     pub wall: &'a [Duration],
     /// Points dropped from all objects.
     pub dropped: u64,
+    /// Points that the filters of all objects left out.
+    pub filtered_out: u64,
 }
 
 impl Row {
@@ -211,6 +215,7 @@ impl Row {
             driver: engine.driver(),
             points,
             dropped: measured.dropped,
+            filtered_out: measured.filtered_out,
             fits: Fits::of(built),
             grid: Grid { resolution: grid.resolution, edge: grid.edge, cells: grid.cell_count() },
             kernels: frame.kernels.iter().copied().collect(),

@@ -32,6 +32,22 @@ pub enum Wanted {
 }
 
 impl Wanted {
+    /// What either wants.
+    #[must_use]
+    pub fn or(&self, other: &Self) -> Self {
+        let (Self::Some { attributes, .. }, Self::Some { attributes: others, .. }) = (self, other)
+        else {
+            return Self::All;
+        };
+        let mut attributes = attributes.clone();
+        attributes.extend(others.iter().filter(|name| !self.attribute(name)).cloned());
+        Self::Some {
+            colors: self.colors() || other.colors(),
+            normals: self.normals() || other.normals(),
+            attributes,
+        }
+    }
+
     pub(crate) fn colors(&self) -> bool {
         matches!(self, Self::All | Self::Some { colors: true, .. })
     }

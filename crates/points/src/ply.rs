@@ -11,12 +11,14 @@
 //! what follows from it. Elements behind the vertices, faces for example, are not read at all.
 
 mod header;
+mod splat;
 
 use crate::collect::Collector;
 use crate::error::{PointsError, Quoted};
 use crate::field::{Field, Type};
 use crate::options::ReadOptions;
 use crate::ply::header::{Element, Encoding, Header, Kind, Property, type_name};
+use crate::ply::splat::Gaussians;
 use crate::set::PointSet;
 use crate::source::{Line, Source};
 use std::path::Path;
@@ -54,10 +56,21 @@ pub(crate) fn read(
             Kind::List { .. } => None,
         })
         .collect();
-    let mut collector = Collector::new(&fields, path, options)?;
-    collector.expect(body.check_count(header.encoding, vertices)?)?;
-    body.element(header.encoding, vertices, &mut |row| collector.push(row))?;
-    collector.finish(header.encoding.in_words())
+    let count = body.check_count(header.encoding, vertices)?;
+    let Some(gaussians) = Gaussians::of(&fields) else {
+        let mut collector = Collector::new(&fields, path, options)?;
+        collector.expect(count)?;
+        body.element(header.encoding, vertices, &mut |row| collector.push(row))?;
+        return collector.finish(header.encoding.in_words());
+    };
+    let mut collector = Collector::new(&gaussians.fields, path, options)?;
+    collector.expect(count)?;
+    let mut row = Vec::new();
+    body.element(header.encoding, vertices, &mut |vertex| {
+        gaussians.fill(vertex, &mut row);
+        collector.push(&row)
+    })?;
+    collector.finish(&format!("{}, 3D Gaussians", header.encoding.in_words()))
 }
 
 fn no_vertices(header: &Header, path: &Path) -> PointsError {

@@ -243,7 +243,7 @@ impl ColorEncoding {
 }
 
 /// The sRGB curve of IEC 61966-2-1, from the stored 0..=1 to linear light.
-fn linear_from_srgb(v: f64) -> f64 {
+pub(crate) fn linear_from_srgb(v: f64) -> f64 {
     if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 

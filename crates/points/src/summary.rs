@@ -13,6 +13,8 @@ pub struct PointSummary {
     pub points: u64,
     /// Points that were dropped.
     pub dropped: Dropped,
+    /// Points with a finite position that a filter left out.
+    pub filtered_out: u64,
     /// Smallest coordinate along each axis.
     pub min: [f64; 3],
     /// Largest coordinate along each axis.
@@ -69,11 +71,18 @@ impl PointSummary {
             format: set.format.clone(),
             points: set.len() as u64,
             dropped: Dropped { non_finite: set.non_finite, invalid: set.invalid },
+            filtered_out: set.filtered_out,
             min,
             max,
             attributes,
             spacing,
         }
+    }
+
+    /// The middle of the box, which a render of these points alone subtracts from them before it goes
+    /// on in 32 bits.
+    pub fn origin(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| 0.5 * self.min[axis] + 0.5 * self.max[axis])
     }
 
     /// The summary as `pointillist info --json` prints it. What JSON has no number for is `null`.
@@ -97,8 +106,10 @@ impl PointSummary {
         json!({
             "format": self.format,
             "points": self.points,
+            "filtered_out": self.filtered_out,
             "dropped": { "count": self.dropped.count(), "reasons": reasons },
             "bounds": { "min": self.min, "max": self.max },
+            "origin": self.origin(),
             "attributes": attributes,
             "spacing": self.spacing,
         })
@@ -175,7 +186,10 @@ impl fmt::Display for PointSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let corner = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
         writeln!(f, "format   {}", self.format)?;
-        writeln!(f, "points   {}", self.points)?;
+        match self.filtered_out {
+            0 => writeln!(f, "points   {}", self.points)?,
+            out => writeln!(f, "points   {} of {}", self.points, self.points + out)?,
+        }
         let Dropped { non_finite, invalid } = self.dropped;
         if non_finite > 0 {
             writeln!(f, "dropped  {non_finite} (position infinite or not a number)")?;
@@ -185,6 +199,7 @@ impl fmt::Display for PointSummary {
         }
         writeln!(f, "min      {}", corner(self.min))?;
         writeln!(f, "max      {}", corner(self.max))?;
+        writeln!(f, "origin   {} (subtracted by a render)", corner(self.origin()))?;
         match self.spacing {
             Some(spacing) => write!(f, "spacing  {spacing} (median to the nearest other point)")?,
             None => write!(f, "spacing  none (a single point)")?,
@@ -241,8 +256,10 @@ mod tests {
         let expected = json!({
             "format": "PLY 1.0, ascii",
             "points": 2,
+            "filtered_out": 0,
             "dropped": { "count": 1, "reasons": { "non-finite position": 1 } },
             "bounds": { "min": [0.5, -2.0, 0.1], "max": [1.0, 4.0, 636_001.76] },
+            "origin": [0.75, 1.0, 318_000.93],
             "spacing": 0.25,
         });
         let mut others = json.clone();

@@ -226,8 +226,8 @@ fn no_collected_file_is_left_out() {
     for folder in ["surfaces", "surfaces/originals", "scans", "volumes", "terrain"] {
         for entry in std::fs::read_dir(data.join(folder)).unwrap() {
             let name = entry.unwrap().file_name().into_string().unwrap();
-            let other = [".png", ".raw", "originals"].iter().any(|end| name.ends_with(end));
-            if !other {
+            let points = [".ply", ".las", ".laz", ".pcd", ".e57"];
+            if points.iter().any(|end| name.ends_with(end)) {
                 names.push(format!("{folder}/{name}"));
             }
         }

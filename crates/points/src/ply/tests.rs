@@ -425,3 +425,30 @@ fn files_longer_than_a_block_are_read_whole() {
         assert!(set.positions.iter().flatten().enumerate().all(|(i, &value)| value == i as f64));
     }
 }
+
+#[test]
+fn gaussians_have_colors_opacity_and_scales() {
+    let names = "x y z nx ny nz f_dc_0 f_dc_1 f_dc_2 f_rest_0 f_rest_44 opacity scale_0 scale_1 \
+                 scale_2 rot_0";
+    let properties: String =
+        names.split(' ').map(|name| format!("property float {name}\n")).collect();
+    let file = format!(
+        "ply\nformat ascii 1.0\nelement vertex 2\n{properties}end_header\n\
+         1 2 3 0 0 0 0 1.772453850905516 -9 7 7 0 0 1 -1 0.5\n\
+         4 5 6 0 0 0 0 0 0 7 7 1e9 0 nan -1e9 0.5\n"
+    );
+    let set = read_bytes(file.as_bytes()).unwrap();
+    assert_eq!(set.format, "PLY 1.0, ascii, 3D Gaussians");
+    assert_eq!(set.normals, None);
+    let colors = set.colors.as_ref().unwrap();
+    // Half of full intensity, in sRGB.
+    let half = ((0.5f64 + 0.055) / 1.055).powf(2.4) as f32;
+    assert_eq!(colors[0], [half, 1.0, 0.0]);
+    let names: Vec<&str> = set.attributes.iter().map(|a| a.name.as_str()).collect();
+    assert_eq!(names, ["opacity", "scale_0", "scale_1", "scale_2", "rot_0"]);
+    let value = |name: &str, point| set.attribute(name).unwrap().get(point);
+    assert_eq!((value("opacity", 0), value("opacity", 1)), (0.5, 1.0));
+    assert_eq!((value("scale_0", 0), value("scale_2", 1)), (1.0, 0.0));
+    assert_eq!(value("scale_1", 0), f64::from(1.0f64.exp() as f32));
+    assert_eq!(value("rot_0", 1), 0.5);
+}
