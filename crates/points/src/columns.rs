@@ -6,7 +6,7 @@
 use crate::collect::Collector;
 use crate::error::PointsError;
 use crate::field::Type;
-use crate::meaning::{SAMPLE_ROWS, Sample};
+use crate::meaning::{SAMPLE_ROWS, Sample, printable};
 use crate::source::Seekable;
 use std::cell::RefCell;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -258,7 +258,7 @@ impl<'f> SideBySide<'f> {
             let found = array.numbers.next(block).map_err(|error| match error.kind() {
                 io::ErrorKind::InvalidData => PointsError::wrong(
                     self.path,
-                    &format!("the data of '{}'", array.name),
+                    &format!("the data of '{}'", printable(&array.name)),
                     &error,
                     "what the header says",
                     "the file is damaged: copy or export it again",
@@ -308,7 +308,7 @@ impl<'f> SideBySide<'f> {
 fn cut_off(path: &Path, array: &Array<'_>, declared: u64, found: u64) -> PointsError {
     PointsError::CutOff {
         path: path.into(),
-        what: format!("values of '{}'", array.name),
+        what: format!("values of '{}'", printable(&array.name)),
         declared,
         found,
         bytes_declared: None,

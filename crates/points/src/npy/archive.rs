@@ -232,7 +232,7 @@ fn members(file: &Shared<'_>, path: &Path) -> Result<Vec<Member>, PointsError> {
         let entry = archive.by_index_raw(index).map_err(damaged)?;
         let name = entry.name().map_err(damaged)?;
         let Some(name) = name.strip_suffix(".npy") else { continue };
-        let place = format!("the packing of '{name}'");
+        let place = format!("the packing of '{}'", meaning::printable(name));
         if entry.encrypted() {
             return Err(wrong(&place, "encryption".to_owned(), "none"));
         }
@@ -243,7 +243,7 @@ fn members(file: &Shared<'_>, path: &Path) -> Result<Vec<Member>, PointsError> {
         };
         let Some(start) = entry.data_start() else { continue };
         members.push(Member {
-            name: name.to_owned(),
+            name: meaning::printable(name),
             start,
             end: start.saturating_add(entry.compressed_size()),
             size: entry.size(),

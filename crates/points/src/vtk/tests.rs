@@ -399,35 +399,26 @@ mod xml {
         for (text, expected) in [
             (
                 HEAD.replace("PolyData", "PPolyData"),
-                "a.vtu:1: found type=\"PPolyData\", expected PolyData: open the pieces, which this \
+                "a.vtu:1: found type='PPolyData', expected PolyData: open the pieces, which this \
                  file only lists, one by one; correct the line or export the file again",
             ),
-            (HEAD.replace("PolyData", "Table"), "found type=\"Table\", expected PolyData, Unstr"),
-            (
-                HEAD.replace("Little", "Middle"),
-                "found byte_order=\"MiddleEndian\", expected Little",
-            ),
-            (HEAD.replace("version", "header_type"), "found header_type=\"1.0\", expected UInt32"),
-            (HEAD.replace("version", "compressor"), "found compressor=\"1.0\", expected vtkZLib"),
+            (HEAD.replace("PolyData", "Table"), "found type='Table', expected PolyData, Unstr"),
+            (HEAD.replace("Little", "Middle"), "found byte_order='MiddleEndian', expected Little"),
+            (HEAD.replace("version", "header_type"), "found header_type='1.0', expected UInt32"),
+            (HEAD.replace("version", "compressor"), "found compressor='1.0', expected vtkZLib"),
             (
                 file("<Piece NumberOfPoints=\"-1\"/>"),
-                "a.vtu:3: found NumberOfPoints=\"-1\", expected",
+                "a.vtu:3: found NumberOfPoints='-1', expected",
             ),
             (
                 file("<Piece NumberOfPoints='1'/>"),
                 "a.vtu:3: found a piece without Points, expected",
             ),
-            (file(&one.replace("3\"", "2\"")), "found NumberOfComponents=\"2\", expected 3"),
-            (
-                file(&one.replace("3\"", "x\"")),
-                "found NumberOfComponents=\"x\", expected 0 to 1000",
-            ),
-            (
-                file(&one.replace("Float32", "String")),
-                "found type=\"String\", expected a type such",
-            ),
-            (file(&one.replace("ascii", "raw")), "found format=\"raw\", expected ascii, binary or"),
-            (file(&one.replace("ascii", "appended")), "found offset=\"\", expected 0 or more"),
+            (file(&one.replace("3\"", "2\"")), "found NumberOfComponents='2', expected 3"),
+            (file(&one.replace("3\"", "x\"")), "found NumberOfComponents='x', expected 0 to 1000"),
+            (file(&one.replace("Float32", "String")), "found type='String', expected a type such"),
+            (file(&one.replace("ascii", "raw")), "found format='raw', expected ascii, binary or"),
+            (file(&one.replace("ascii", "appended")), "found offset='', expected 0 or more"),
             (
                 file(&one.replace("ascii\"", "appended\" offset=\"0\"")),
                 "a.vtu: found no '_' in the tag AppendedData, expected it behind the description",
@@ -471,7 +462,7 @@ mod xml {
         ));
         let count = |extent: &str| image.replace("0 999 0 999 0 999", extent);
         assert_eq!(read("a.vti", count("0 1 2 2 3 5")).positions[1], [1.0, 2.0, 3.0]);
-        assert!(message(count("0 1 2")).contains("found Extent=\"0 1 2\", expected 6 numbers"));
+        assert!(message(count("0 1 2")).contains("found Extent='0 1 2', expected 6 numbers"));
         assert!(message(count("0 -9 0 0 0 0")).contains("expected ends that do not lie before"));
         let far = "-9223372036854775808 9223372036854775807 0 0 0 0";
         assert!(message(count(far)).contains("expected ends that do not lie before"));

@@ -7,6 +7,7 @@ mod scan;
 use crate::columns::{Coding, Numbers, Part, Records, Shared, check_expansion};
 use crate::error::PointsError;
 use crate::field::Type;
+use crate::meaning::printable;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
@@ -177,7 +178,7 @@ impl Outline {
             if found < wanted - old {
                 return Err(PointsError::CutOff {
                     path: path.into(),
-                    what: format!("values of '{}'", stored.described.name),
+                    what: format!("values of '{}'", printable(&stored.described.name)),
                     declared: count,
                     found: (old + found) as u64,
                     bytes_declared: None,

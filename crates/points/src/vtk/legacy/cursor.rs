@@ -3,6 +3,7 @@
 use crate::columns::{Part, Shared, fill};
 use crate::error::{PointsError, Quoted};
 use crate::lines::HELP as LINE_HELP;
+use crate::meaning::printable;
 use crate::vtk::HELP;
 use crate::vtk::ascii::next_word;
 use crate::vtk::legacy::Encoding;
@@ -159,7 +160,7 @@ impl<'f, 'a> Cursor<'f, 'a> {
             // A keyword where a number should be; NaN is the only one in capitals.
             if !is_number && !word.eq_ignore_ascii_case(b"nan") {
                 self.line += line_ends + 1;
-                let expected = format!("the {values} values of '{name}'");
+                let expected = format!("the {values} values of '{}'", printable(name));
                 return Err(self.wrong(&String::from_utf8_lossy(&word), &expected));
             }
         }
@@ -199,7 +200,7 @@ impl<'f, 'a> Cursor<'f, 'a> {
     ) -> PointsError {
         let what = match name {
             "points" => "points".to_owned(),
-            name => format!("values of '{name}'"),
+            name => format!("values of '{}'", printable(name)),
         };
         let path = self.path.into();
         PointsError::CutOff { path, what, declared, found, bytes_declared, bytes_found }

@@ -1,7 +1,7 @@
 //! Goes through a VTK XML file, tag by tag, and notes where what is.
 
 use crate::columns::Shared;
-use crate::error::PointsError;
+use crate::error::{PointsError, Quoted};
 use crate::field::Type;
 use crate::vtk::lattice::{Axis, MAX_BARE_NODES, too_many_nodes};
 use crate::vtk::xml::markup::{Markup, Tag, TagKind};
@@ -28,7 +28,7 @@ pub(super) fn outline(file: &Shared<'_>, path: &Path) -> Result<Outline, PointsE
             TagKind::Close => {
                 scan.close(&markup, &tag)?;
                 if open.pop().as_ref() != Some(&tag.name) {
-                    let found = format!("'</{}>'", tag.name);
+                    let found = Quoted(format!("</{}>", tag.name).as_bytes()).to_string();
                     return Err(markup.wrong(found, "the end of the tag that was opened last"));
                 }
                 continue;
@@ -118,7 +118,7 @@ impl Scan {
                 let piece = Open {
                     points: match tag.get("NumberOfPoints") {
                         Some(count) => count.trim().parse().map_err(|_| {
-                            markup.wrong(format!("NumberOfPoints=\"{count}\""), "0 or more")
+                            markup.wrong(attribute("NumberOfPoints", count), "0 or more")
                         })?,
                         None => 0,
                     },
@@ -164,11 +164,12 @@ impl Scan {
     /// The outermost tag.
     fn root(&mut self, markup: &Markup<'_, '_>, tag: &Tag) -> Result<(), PointsError> {
         if tag.name != "VTKFile" {
-            return Err(markup.wrong(format!("'<{}>'", tag.name), "'<VTKFile>'"));
+            let found = Quoted(format!("<{}>", tag.name).as_bytes()).to_string();
+            return Err(markup.wrong(found, "'<VTKFile>'"));
         }
         let kind = tag.get("type").unwrap_or_default();
         if !KINDS.contains(&kind) {
-            let found = format!("type=\"{kind}\"");
+            let found = attribute("type", kind);
             let expected = match kind.strip_prefix('P') {
                 Some(parts) if KINDS.contains(&parts) => {
                     format!("{parts}: open the pieces, which this file only lists, one by one")
@@ -181,7 +182,7 @@ impl Scan {
             None | Some("LittleEndian") => false,
             Some("BigEndian") => true,
             Some(other) => {
-                let found = format!("byte_order=\"{other}\"");
+                let found = attribute("byte_order", other);
                 return Err(markup.wrong(found, "LittleEndian or BigEndian"));
             }
         };
@@ -189,7 +190,7 @@ impl Scan {
             None | Some("UInt32") => false,
             Some("UInt64") => true,
             Some(other) => {
-                let found = format!("header_type=\"{other}\"");
+                let found = attribute("header_type", other);
                 return Err(markup.wrong(found, "UInt32 or UInt64"));
             }
         };
@@ -199,7 +200,7 @@ impl Scan {
             Some("vtkLZ4DataCompressor") => Some(Packing::Lz4),
             Some("vtkLZMADataCompressor") => Some(Packing::Lzma),
             Some(other) => {
-                let found = format!("compressor=\"{other}\"");
+                let found = attribute("compressor", other);
                 let expected =
                     "vtkZLibDataCompressor, vtkLZ4DataCompressor or vtkLZMADataCompressor";
                 return Err(markup.wrong(found, expected));
@@ -221,14 +222,14 @@ impl Scan {
             if owner == Owner::PointData {
                 return Ok(()); // text and the like
             }
-            let found = format!("type=\"{}\"", tag.get("type").unwrap_or_default());
+            let found = attribute("type", tag.get("type").unwrap_or_default());
             return Err(markup.wrong(found, "a type such as Float32 or Float64"));
         };
         let width = match tag.get("NumberOfComponents") {
             None => 1,
             Some(text) => {
                 let width = text.trim().parse().ok().filter(|&width| width <= MAX_COLUMNS);
-                let found = || format!("NumberOfComponents=\"{text}\"");
+                let found = || attribute("NumberOfComponents", text);
                 width.ok_or_else(|| markup.wrong(found(), format!("0 to {MAX_COLUMNS}")))?
             }
         };
@@ -238,7 +239,7 @@ impl Scan {
             Owner::PointData => width,
         };
         if width != expected {
-            let found = format!("NumberOfComponents=\"{width}\"");
+            let found = attribute("NumberOfComponents", width);
             return Err(markup.wrong(found, expected.to_string()));
         }
         let name = tag.get("Name").unwrap_or_default().to_owned();
@@ -253,12 +254,12 @@ impl Scan {
             Some("binary") => Place::Inline(markup.at, markup.at),
             Some("appended") => {
                 let offset = tag.get("offset").unwrap_or_default();
-                let found = || format!("offset=\"{offset}\"");
+                let found = || attribute("offset", offset);
                 let parsed = offset.trim().parse();
                 Place::Appended(parsed.map_err(|_| markup.wrong(found(), "0 or more"))?)
             }
             Some(other) => {
-                let found = format!("format=\"{other}\"");
+                let found = attribute("format", other);
                 return Err(markup.wrong(found, "ascii, binary or appended"));
             }
         };
@@ -369,8 +370,13 @@ fn numbers<T: std::str::FromStr + Copy, const N: usize>(
     let parsed: Option<Vec<T>> =
         text.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
     let parsed = parsed.and_then(|numbers| <[T; N]>::try_from(numbers).ok());
-    let found = || format!("{name}=\"{}\"", text.chars().take(60).collect::<String>());
+    let found = || attribute(name, text);
     parsed.ok_or_else(|| markup.wrong(found(), format!("{N} numbers")))
+}
+
+/// An attribute as a message has it.
+fn attribute(name: &str, value: impl ToString) -> String {
+    format!("{name}={}", Quoted(value.to_string().as_bytes()))
 }
 
 fn type_of(name: &str) -> Option<Type> {
