@@ -116,3 +116,17 @@ fn files_of_vtk_hold_what_was_put_in() {
         assert_eq!(set.attributes.len(), 5, "{name}");
     }
 }
+
+/// Files that are gone through twice tell so only once.
+#[test]
+fn progress_never_goes_back() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let length = std::fs::metadata(&path).unwrap().len();
+        let mut told = Vec::new();
+        points::read(&path, &mut |read, of| told.push((read, of))).unwrap();
+        assert!(told.is_sorted() && !told.is_empty(), "{}: {told:?}", path.display());
+        assert!(told.iter().all(|&(read, of)| read <= length && of == length), "{told:?}");
+    }
+}

@@ -20,6 +20,11 @@ use zip::{CompressionMethod, ZipArchive};
 /// Most arrays of an archive.
 const MAX_ARRAYS: usize = 1000;
 
+/// Most bytes that are unpacked more than once.
+const MAX_AGAIN: u64 = 1 << 32;
+
+const HELP_ORDER: &str = "save numpy.ascontiguousarray of it, or do not compress";
+
 /// Whether a file that begins so is an archive.
 pub(crate) fn sniff(start: &[u8]) -> bool {
     start.starts_with(b"PK\x03\x04") || start.starts_with(b"PK\x05\x06")
@@ -37,6 +42,7 @@ struct Member {
 }
 
 impl Member {
+    /// The array from its beginning.
     fn open<'f>(&self, file: &'f Shared<'_>) -> Box<dyn Read + 'f> {
         let stored = Part::new(file, self.start, self.end).buffered();
         let reader: Box<dyn Read + 'f> = match self.deflated {
@@ -44,6 +50,23 @@ impl Member {
             false => Box::new(stored),
         };
         Box::new(Checked { reader, left: self.size, crc: Crc::new(), expected: self.crc })
+    }
+
+    /// The array from a place on, which takes unpacking what is before it. Without, the checksum is
+    /// left alone if more than a header is before it.
+    fn open_at<'f>(
+        &self,
+        file: &'f Shared<'_>,
+        place: u64,
+        header: &Header,
+    ) -> io::Result<Box<dyn Read + 'f>> {
+        if !self.deflated && place > header.length {
+            let start = self.start.saturating_add(place);
+            return Ok(Box::new(Part::new(file, start, self.end).buffered()));
+        }
+        let mut reader = self.open(file);
+        io::copy(&mut reader.by_ref().take(place), &mut io::sink())?;
+        Ok(reader)
     }
 }
 
@@ -84,6 +107,7 @@ pub(crate) fn read(
 ) -> Result<PointSet, PointsError> {
     let io_error = |source| PointsError::Io { path: path.into(), source };
     let file: Shared<'_> = RefCell::new(source.seekable().map_err(io_error)?);
+    file.borrow_mut().begin_pass(false);
     let members = members(&file, path)?;
     let mut entries = Vec::new();
     let mut left_out = Vec::new();
@@ -121,6 +145,14 @@ pub(crate) fn read(
                 bytes_found: Some(left),
             });
         }
+        // The columns that come first are unpacked again for each that follows.
+        let again = needed.saturating_mul(rows.names.len() as u64) / 2;
+        if member.deflated && rows.apart && again > MAX_AGAIN {
+            let place = format!("the order of '{}'", member.name);
+            let found = format!("{} columns one after the other", rows.names.len());
+            let expected = "one row after the other, as the array is packed";
+            return Err(PointsError::wrong(path, &place, found, expected, HELP_ORDER));
+        }
         columns += rows.names.len();
         bytes = bytes.saturating_add(needed);
         taken.push((entry, chosen));
@@ -128,6 +160,7 @@ pub(crate) fn read(
     let length = file.borrow().length();
     check_expansion(path, bytes, length)?;
 
+    file.borrow_mut().begin_pass(true);
     let mut names = Vec::new();
     let mut kinds: Vec<Type> = Vec::new();
     let mut arrays = Vec::new();
@@ -135,7 +168,7 @@ pub(crate) fn read(
         let Entry { member, header, rows } = entry;
         names.extend(entry.names(chosen));
         kinds.extend(rows.kinds());
-        let open = || Ok(member.open(&file));
+        let open = |place: u64| member.open_at(&file, place, header);
         arrays.extend(rows.arrays(header, &member.name, &open).map_err(io_error)?);
     }
     let table = SideBySide::new(arrays, points, path)?;

@@ -314,3 +314,15 @@ fn archives_that_are_made_to_fill_memory_are_refused() {
     let found = message(&npz(&[("xyz", zeros)], true));
     assert!(found.contains("found 360000000 bytes as the size of the unpacked arrays"), "{found}");
 }
+
+/// Each of a thousand columns would be found by unpacking all those before it.
+#[test]
+fn columns_that_take_long_to_unpack_are_refused() {
+    let zeros = npy("'<f8'", true, "(4000, 999)", &vec![0; 4000 * 999 * 8]);
+    let xyz = npy("'<f4'", false, "(4000, 3)", &vec![0; 48_000]);
+    let found = message(&npz(&[("a", zeros.clone()), ("xyz", xyz.clone())], true));
+    assert!(found.contains("found 999 columns one after the other as the order of 'a'"), "{found}");
+    let few = npy("'<f8'", true, "(4000, 3)", &vec![0; 96_000]);
+    assert_eq!(read(&npz(&[("xyz", few)], true)).len(), 4000);
+    assert_eq!(read(&npz(&[("xyz", xyz), ("a", zeros)], false)).len(), 4000);
+}

@@ -29,7 +29,9 @@ pub(crate) fn read(
 ) -> Result<PointSet, PointsError> {
     let io_error = |source| PointsError::Io { path: path.into(), source };
     let file: Shared<'_> = RefCell::new(source.seekable().map_err(io_error)?);
+    file.borrow_mut().begin_pass(false);
     let outline = scan::outline(&file, path)?;
+    file.borrow_mut().begin_pass(true);
     let mut arrays: Vec<(Described, Box<dyn Numbers + '_>)> = Vec::new();
     match outline.positions {
         Positions::Stored(stored) => arrays.push(stored.open(&file)),

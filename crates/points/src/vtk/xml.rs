@@ -76,7 +76,9 @@ pub(crate) fn read(
 ) -> Result<PointSet, PointsError> {
     let io_error = |source| PointsError::Io { path: path.into(), source };
     let file: Shared<'_> = RefCell::new(source.seekable().map_err(io_error)?);
+    file.borrow_mut().begin_pass(false);
     let outline = scan::outline(&file, path)?;
+    file.borrow_mut().begin_pass(true);
     let length = file.borrow().length();
     let total = outline.pieces.iter().fold(0, |sum: u64, piece| sum.saturating_add(piece.points));
     // What is packed may be a hundred times the file; text takes two bytes a number at least.

@@ -180,6 +180,20 @@ pub(super) struct Base64<R> {
     count: u32,
 }
 
+/// What is no sign of base64.
+const NONE: u8 = 0x80;
+/// The value of each sign.
+const VALUES: [u8; 256] = {
+    let mut values = [NONE; 256];
+    let signs = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut value = 0;
+    while value < signs.len() {
+        values[signs[value] as usize] = value as u8;
+        value += 1;
+    }
+    values
+};
+
 impl<R: BufRead> Base64<R> {
     pub(super) fn new(reader: R) -> Self {
         Self { reader, bits: 0, count: 0 }
@@ -195,23 +209,33 @@ impl<R: BufRead> Read for Base64<R> {
                 return Ok(0);
             }
             let mut read = 0;
-            for &sign in there {
+            if self.count == 0 {
+                // Four signs are three bytes.
+                for (signs, bytes) in there.chunks_exact(4).zip(buffer.chunks_exact_mut(3)) {
+                    let [a, b, c, d] = [0, 1, 2, 3].map(|i| VALUES[usize::from(signs[i])]);
+                    if (a | b | c | d) & NONE != 0 {
+                        break;
+                    }
+                    let bits =
+                        [a, b, c, d].iter().fold(0, |bits, &value| bits << 6 | u32::from(value));
+                    bytes.copy_from_slice(&bits.to_be_bytes()[1..]);
+                    read += 4;
+                    written += 3;
+                }
+            }
+            for &sign in &there[read..] {
                 if written == buffer.len() {
                     break;
                 }
                 read += 1;
-                let value = match sign {
-                    b'A'..=b'Z' => sign - b'A',
-                    b'a'..=b'z' => sign - b'a' + 26,
-                    b'0'..=b'9' => sign - b'0' + 52,
-                    b'+' => 62,
-                    b'/' => 63,
-                    b'=' => {
+                let value = match VALUES[usize::from(sign)] {
+                    NONE if sign == b'=' => {
                         self.count = 0;
                         continue;
                     }
-                    _ if sign.is_ascii_whitespace() => continue,
-                    _ => return Err(damaged(format!("'{}' in base64", sign.escape_ascii()))),
+                    NONE if sign.is_ascii_whitespace() => continue,
+                    NONE => return Err(damaged(format!("'{}' in base64", sign.escape_ascii()))),
+                    value => value,
                 };
                 self.bits = self.bits << 6 | u32::from(value);
                 self.count += 6;
@@ -219,6 +243,9 @@ impl<R: BufRead> Read for Base64<R> {
                     self.count -= 8;
                     buffer[written] = (self.bits >> self.count) as u8;
                     written += 1;
+                }
+                if self.count == 0 {
+                    break; // back to four at a time
                 }
             }
             self.reader.consume(read);
