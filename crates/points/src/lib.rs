@@ -18,7 +18,7 @@ mod summary;
 mod watch;
 
 pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange, bounds_of};
-pub use grid::{BALL_MARGIN, plan_grid, skips_cells};
+pub use grid::{BALL_MARGIN, Grids, plan_grids};
 pub use neighbors::NeighborSearch;
 pub use read::{PointsError, read};
 pub use rims::Rims;
