@@ -5,7 +5,7 @@ use crate::errors::Failure;
 use crate::memory;
 use crate::progress::Progress;
 use plan::{Plan, SceneImages, Window};
-use points::{PointSet, Watch};
+use points::{PointSet, ReadOptions, Wanted, Watch};
 use scene::{Albedo, ImageFile, Object, Scene, Up};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -159,24 +159,44 @@ impl Input {
         Ok(plan::checked_crop(crop, self.scene.image.size)?)
     }
 
-    /// Reads the points of every object, each file once, and warns of those that are of no use.
+    /// Reads of every object's points what a render needs, and tells of those that are of no use or left
+    /// out.
     pub fn read_points(&self, progress: &Progress) -> Result<Vec<Arc<PointSet>>, Failure> {
-        let mut read: HashMap<PathBuf, Arc<PointSet>> = HashMap::new();
-        let mut sets = Vec::new();
+        self.read_as(plan::read_options, progress)
+    }
+
+    /// The same with everything that the files have.
+    pub fn read_all(&self, progress: &Progress) -> Result<Vec<Arc<PointSet>>, Failure> {
+        let all = |object: &Object| ReadOptions {
+            wanted: Wanted::All,
+            filter: plan::point_filter(&object.filter),
+        };
+        self.read_as(all, progress)
+    }
+
+    /// Reads each file once for all objects with the same filter.
+    fn read_as(
+        &self,
+        options: impl Fn(&Object) -> ReadOptions,
+        progress: &Progress,
+    ) -> Result<Vec<Arc<PointSet>>, Failure> {
+        let mut jobs: Vec<(PathBuf, &Path, ReadOptions)> = Vec::new();
+        let mut job_of = Vec::new();
         for object in &self.scene.objects {
-            let path = &object.points;
-            let file = same_file(path);
-            let set = match read.get(&file) {
-                Some(set) => Arc::clone(set),
-                None => {
-                    let set = Arc::new(read_file(path, progress)?);
-                    read.insert(file, Arc::clone(&set));
-                    set
-                }
-            };
-            sets.push(set);
+            let (file, options) = (same_file(&object.points), options(object));
+            let known = jobs.iter().position(|job| job.0 == file && job.2.filter == options.filter);
+            if let Some(job) = known {
+                jobs[job].2.wanted = jobs[job].2.wanted.or(&options.wanted);
+            } else {
+                jobs.push((file, &object.points, options));
+            }
+            job_of.push(known.unwrap_or(jobs.len() - 1));
         }
-        Ok(sets)
+        let sets = jobs
+            .iter()
+            .map(|(_, path, options)| Ok(Arc::new(read_file(path, options, progress)?)))
+            .collect::<Result<Vec<_>, Failure>>()?;
+        Ok(job_of.into_iter().map(|job| Arc::clone(&sets[job])).collect())
     }
 
     /// Reads the images and plans the render. This checks whatever of the scene depends on its points and
@@ -214,18 +234,28 @@ fn texture_of(object: &Object) -> Option<&ImageFile> {
     }
 }
 
-/// Reads one point file, and warns of points that are of no use.
-pub fn read_file(path: &Path, progress: &Progress) -> Result<PointSet, Failure> {
+/// Reads one point file, and tells of points that are of no use or left out.
+pub fn read_file(
+    path: &Path,
+    options: &ReadOptions,
+    progress: &Progress,
+) -> Result<PointSet, Failure> {
     progress.stage("reading points", fs::metadata(path).map_or(0, |file| file.len()));
-    let set = points::read(path, &mut |done, _| progress.done(done))?;
+    let set = points::read_with(path, options, &mut |done, _| progress.done(done))?;
     progress.clear();
-    if set.non_finite > 0 {
-        progress.note(&format!(
-            "warning: {}: dropped {} of {} points, whose position is infinite or not a number",
-            path.display(),
-            set.non_finite,
-            set.non_finite + set.len() as u64
-        ));
+    let file = path.display();
+    for (dropped, why) in [
+        (set.non_finite, "whose position is infinite or not a number"),
+        (set.invalid, "which the file marks as invalid"),
+    ] {
+        if dropped > 0 {
+            let all = set.in_file();
+            progress.note(&format!("warning: {file}: dropped {dropped} of {all} points, {why}"));
+        }
+    }
+    if !options.filter.keeps_all() {
+        let (kept, all) = (set.len(), set.len() as u64 + set.filtered_out);
+        progress.note(&format!("{file}: kept {kept} of {all} points ({})", options.filter));
     }
     Ok(set)
 }

@@ -61,9 +61,9 @@ fn image_hash(plan: &Plan, image: u32) -> Option<String> {
     Some(hex(hash.finalize()))
 }
 
-/// SHA-256 of a point set, whatever its file's encoding: the number of points as u64, their positions as
-/// f64; then for colours, normals and each attribute, in the file's order, the name, a zero byte and the
-/// values, in the type that holds them. All little-endian.
+/// SHA-256 of a point set as the picture uses it, whatever its file's encoding: the number of points as u64,
+/// their positions as f64; then for colours, normals and each attribute that was read, in the file's order,
+/// the name, a zero byte and the values, in the smallest float type that holds them. All little-endian.
 fn points_hash(set: &PointSet) -> String {
     let mut hash = Sha256::new();
     hash.update((set.len() as u64).to_le_bytes());
@@ -93,14 +93,17 @@ fn points_hash(set: &PointSet) -> String {
         }
     }
     for attribute in &set.attributes {
-        match &attribute.values {
-            Values::F32(values) => {
-                feed(Some(&attribute.name), &mut values.iter().map(|&v| Number::Single(v)));
+        let single = match attribute.values {
+            Values::I32(_) | Values::U32(_) | Values::F64(_) => false,
+            Values::I8(_) | Values::U8(_) | Values::I16(_) | Values::U16(_) | Values::F32(_) => {
+                true
             }
-            Values::F64(values) => {
-                feed(Some(&attribute.name), &mut values.iter().map(|&v| Number::Double(v)));
-            }
-        }
+        };
+        let number = |value: f64| match single {
+            true => Number::Single(value as f32),
+            false => Number::Double(value),
+        };
+        feed(Some(&attribute.name), &mut attribute.values.iter().map(number));
     }
     hex(hash.finalize())
 }

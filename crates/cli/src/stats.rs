@@ -71,6 +71,8 @@ pub struct Row {
     pub points: u64,
     /// Points dropped from all objects.
     pub dropped: u64,
+    /// Points that the filters of all objects left out.
+    pub filtered_out: u64,
     /// How the fits ended.
     pub fits: Fits,
     /// The grids, the finest first: one, or several where sizes of trust balls differ.
@@ -163,6 +165,8 @@ pub struct Measured<'a> {
     pub wall: &'a [Duration],
     /// Points dropped from all objects.
     pub dropped: u64,
+    /// Points that the filters of all objects left out.
+    pub filtered_out: u64,
 }
 
 impl Row {
@@ -215,6 +219,7 @@ impl Row {
             driver: engine.driver(),
             points,
             dropped: measured.dropped,
+            filtered_out: measured.filtered_out,
             fits: Fits::of(built),
             grids: built.grids().levels.iter().map(grid_of).collect(),
             kernels: frame.kernels.iter().copied().collect(),

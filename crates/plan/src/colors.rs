@@ -7,7 +7,7 @@ use points::PointSet;
 use scene::{ColorMap, Object, TextureAxis, Transform};
 
 /// Names that exporters give to the two places of a point in a texture.
-const UV: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
+pub(crate) const UV: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
 /// Places beyond are as good as infinite, which no arithmetic likes.
 const FAR: f64 = 1e6;
 /// Under this, a bounding box is flat.
@@ -28,7 +28,8 @@ pub(crate) fn attribute_values(set: &PointSet, name: &str) -> Result<Vec<f64>, S
         (None, Some(axis)) => Ok(set.positions.iter().map(|p| p[axis]).collect()),
         (None, None) => {
             let known = set.attributes.iter().map(|attribute| attribute.name.as_str());
-            Err(known.chain(axes).collect::<Vec<_>>().join(", "))
+            let left_out = set.left_out.iter().map(String::as_str);
+            Err(known.chain(left_out).chain(axes).collect::<Vec<_>>().join(", "))
         }
     }
 }

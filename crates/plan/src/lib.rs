@@ -14,6 +14,7 @@ mod filter;
 mod images;
 mod inside;
 mod isolated;
+mod needs;
 mod objects;
 mod picture;
 mod volumes;
@@ -23,6 +24,7 @@ pub use diagnostic::Diagnostic;
 pub use discs::{MAX_DISC_PAIRS, screen_tiles};
 pub use error::PlanError;
 pub use images::{Cleaned, SceneImages};
+pub use needs::{filter as point_filter, read_options};
 pub use picture::{Picture, Rays};
 pub use volumes::Volumes;
 

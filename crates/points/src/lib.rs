@@ -6,21 +6,44 @@
 #![forbid(unsafe_code)]
 
 mod cloud;
+mod collect;
+mod columns;
 #[cfg(feature = "device")]
 pub mod device;
+mod e57;
+mod error;
+mod field;
+mod filter;
+mod format;
 mod grid;
+mod guard;
+mod las;
+mod lines;
+mod meaning;
 pub mod neighbors;
+mod npy;
+mod number;
+mod obj;
+mod off;
+mod options;
+mod pcd;
 mod ply;
 mod read;
 mod rims;
 mod set;
+mod source;
 mod summary;
+mod text;
+mod vtk;
 mod watch;
 
 pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange, bounds_of};
+pub use error::PointsError;
+pub use filter::Filter;
 pub use grid::{BALL_MARGIN, Grids, plan_grids};
 pub use neighbors::NeighborSearch;
-pub use read::{PointsError, read};
+pub use options::{ReadOptions, Wanted};
+pub use read::{read, read_bytes, read_with};
 pub use rims::Rims;
 pub use set::{Attribute, ColorEncoding, PointSet, Values};
 pub use summary::{Dropped, PointSummary, Range};

@@ -10,16 +10,17 @@
 //! `files_cut_at_any_byte_do_not_panic` and `hostile_counts_before_the_vertices_end_quickly` hold
 //! what follows from it. Elements behind the vertices, faces for example, are not read at all.
 
-mod collect;
 mod header;
-mod source;
+mod splat;
 
-use crate::ply::collect::Collector;
-use crate::ply::header::{Element, Encoding, Header, Kind, Property, Type};
-use crate::ply::source::{Line, Source};
-use crate::read::{PointsError, Quoted};
+use crate::collect::Collector;
+use crate::error::{PointsError, Quoted};
+use crate::field::{Field, Type};
+use crate::options::ReadOptions;
+use crate::ply::header::{Element, Encoding, Header, Kind, Property, type_name};
+use crate::ply::splat::Gaussians;
 use crate::set::PointSet;
-use std::io::Read;
+use crate::source::{Line, Source};
 use std::path::Path;
 
 /// Longest line of a text file. Only lists come near it.
@@ -28,19 +29,16 @@ const MAX_LINE: usize = 1 << 24;
 const VERTEX: &str = "vertex";
 
 /// Whether a file that begins with these bytes says that it is PLY.
-pub(crate) fn is_ply(start: &[u8]) -> bool {
+pub(crate) fn sniff(start: &[u8]) -> bool {
     start.strip_prefix(b"ply").is_some_and(|rest| rest.first().is_none_or(u8::is_ascii_whitespace))
 }
 
-/// Reads the vertices. `length` is the file's length in bytes where it is known; `path` is for
-/// messages.
+/// Reads the vertices.
 pub(crate) fn read(
-    file: impl Read,
-    length: Option<u64>,
+    mut source: Source<'_>,
     path: &Path,
-    progress: &mut dyn FnMut(u64, u64),
+    options: &ReadOptions,
 ) -> Result<PointSet, PointsError> {
-    let mut source = Source::new(file, length, progress);
     let header = header::read(&mut source, path)?;
     let vertex = header.elements.iter().position(|element| element.name == VERTEX);
     let Some(vertex) = vertex else {
@@ -48,14 +46,31 @@ pub(crate) fn read(
     };
     let mut body = Body { source, path, line: header.lines, line_end: header.line_end };
     for element in &header.elements[..vertex] {
-        body.element(header.encoding, element, &mut |_, _| ())?;
+        body.element(header.encoding, element, &mut |_| Ok(()))?;
     }
 
     let vertices = &header.elements[vertex];
-    let mut collector = Collector::new(vertices, path)?;
-    collector.reserve(body.check_count(header.encoding, vertices)?)?;
-    body.element(header.encoding, vertices, &mut |index, row| collector.push(index, row))?;
-    collector.finish(vertices.count, header.encoding.in_words())
+    let fields: Vec<Field> = (vertices.properties.iter())
+        .filter_map(|property| match property.kind {
+            Kind::Number(kind) => Some(Field::new(&property.name, kind)),
+            Kind::List { .. } => None,
+        })
+        .collect();
+    let count = body.check_count(header.encoding, vertices)?;
+    let Some(gaussians) = Gaussians::of(&fields) else {
+        let mut collector = Collector::new(&fields, path, options)?;
+        collector.expect(count)?;
+        body.element(header.encoding, vertices, &mut |row| collector.push(row))?;
+        return collector.finish(header.encoding.in_words());
+    };
+    let mut collector = Collector::new(&gaussians.fields, path, options)?;
+    collector.expect(count)?;
+    let mut row = Vec::new();
+    body.element(header.encoding, vertices, &mut |vertex| {
+        gaussians.fill(vertex, &mut row);
+        collector.push(&row)
+    })?;
+    collector.finish(&format!("{}, 3D Gaussians", header.encoding.in_words()))
 }
 
 fn no_vertices(header: &Header, path: &Path) -> PointsError {
@@ -69,22 +84,20 @@ fn no_vertices(header: &Header, path: &Path) -> PointsError {
     }
 }
 
-/// Takes the place in the file and the values of one record, one a property; those of lists are
-/// without meaning.
-type Take<'a> = dyn FnMut(u32, &[f64]) + 'a;
+/// Takes the values of one record, one for each property that is no list.
+type Take<'a> = dyn FnMut(&[f64]) -> Result<(), PointsError> + 'a;
 
 /// The part of a file behind its header.
-struct Body<'a, R> {
-    source: Source<'a, R>,
+struct Body<'a, 's> {
+    source: Source<'s>,
     path: &'a Path,
     /// Lines read so far, for messages; counts in text files alone.
     line: u64,
     line_end: u8,
 }
 
-impl<R: Read> Body<'_, R> {
-    /// Reads one element, record by record. Indices beyond 32 bits, which only elements before the
-    /// vertices can have, stay at the largest.
+impl Body<'_, '_> {
+    /// Reads one element, record by record.
     fn element(
         &mut self,
         encoding: Encoding,
@@ -103,20 +116,20 @@ impl<R: Read> Body<'_, R> {
         }
     }
 
-    /// For how many vertices memory can be reserved: as many as declared, but no more than the
-    /// file has bytes for. Fails early where it is clear that there are too few or too many.
-    fn check_count(&self, encoding: Encoding, element: &Element) -> Result<usize, PointsError> {
+    /// For how many vertices memory can be asked: as many as declared, but no more than the file
+    /// has bytes for. Fails early where it is clear that there are too few or too many.
+    fn check_count(&self, encoding: Encoding, element: &Element) -> Result<u64, PointsError> {
         let least = element.least_record_size(encoding);
-        let left = self.source.left();
-        let fits = left.map(|left| left / least.max(1));
+        let fits = self.source.records(element.count, least);
         let fixed = encoding != Encoding::Ascii && element.record_size().is_some();
-        if let Some(fits) = fits.filter(|&fits| fixed && fits < element.count) {
+        let left = self.source.left();
+        if fixed && left.is_some() && fits < element.count {
             return Err(cut_off(self.path, element, fits, left));
         }
-        if element.count.min(fits.unwrap_or(u64::MAX)) > u64::from(u32::MAX) {
+        if left.is_none() && element.count > u64::from(u32::MAX) {
             return Err(PointsError::TooMany { path: self.path.into(), found: element.count });
         }
-        Ok(usize::try_from(element.count.min(fits.unwrap_or(0))).unwrap_or(0))
+        Ok(fits)
     }
 
     /// Binary records that are all of one size.
@@ -148,9 +161,9 @@ impl<R: Read> Body<'_, R> {
             }
             for record in there[..records * size].chunks_exact(size) {
                 for (value, &(kind, offset)) in row.iter_mut().zip(&places) {
-                    *value = number::<BIG>(kind, &record[offset..]);
+                    *value = kind.read::<BIG>(&record[offset..]);
                 }
-                take(u32::try_from(done).unwrap_or(u32::MAX), &row);
+                take(&row)?;
                 done += 1;
             }
             self.source.consume(records * size);
@@ -166,9 +179,10 @@ impl<R: Read> Body<'_, R> {
     ) -> Result<(), PointsError> {
         let path = self.path;
         let io_error = |source| PointsError::Io { path: path.into(), source };
-        let mut row = vec![0.0; element.properties.len()];
+        let mut row = Vec::with_capacity(element.properties.len());
         for index in 0..element.count {
-            for (value, property) in row.iter_mut().zip(&element.properties) {
+            row.clear();
+            for property in &element.properties {
                 let (kind, item) = match property.kind {
                     Kind::Number(kind) => (kind, None),
                     Kind::List { length, item } => (length, Some(item)),
@@ -177,25 +191,28 @@ impl<R: Read> Body<'_, R> {
                 if there.len() < kind.size() {
                     return Err(cut_off(path, element, index, None));
                 }
-                *value = number::<BIG>(kind, there);
+                let value = kind.read::<BIG>(there);
                 self.source.consume(kind.size());
-                let Some(item) = item else { continue };
-                if *value < 0.0 {
+                let Some(item) = item else {
+                    row.push(value);
+                    continue;
+                };
+                if value < 0.0 {
                     return Err(PointsError::ListLength {
                         path: self.path.into(),
                         element: element.name.clone(),
                         index,
                         property: property.name.clone(),
-                        length: *value,
+                        length: value,
                     });
                 }
                 // At most 2^32 items of 8 bytes.
-                let bytes = *value as u64 * item.size() as u64;
+                let bytes = value as u64 * item.size() as u64;
                 if self.source.skip(bytes).map_err(io_error)? < bytes {
                     return Err(cut_off(path, element, index, None));
                 }
             }
-            take(u32::try_from(index).unwrap_or(u32::MAX), &row);
+            take(&row)?;
         }
         Ok(())
     }
@@ -204,7 +221,7 @@ impl<R: Read> Body<'_, R> {
     fn text(&mut self, element: &Element, take: &mut Take<'_>) -> Result<(), PointsError> {
         let path = self.path;
         let io_error = |source| PointsError::Io { path: path.into(), source };
-        let mut row = vec![0.0; element.properties.len()];
+        let mut row = Vec::with_capacity(element.properties.len());
         let mut index = 0;
         while index < element.count {
             self.line += 1;
@@ -233,7 +250,7 @@ impl<R: Read> Body<'_, R> {
                 let (found, expected) = wrong.describe(words().count());
                 return Err(line_error(found, format!("{expected} of {} {index}", element.name)));
             }
-            take(u32::try_from(index).unwrap_or(u32::MAX), &row);
+            take(&row)?;
             index += 1;
         }
         Ok(())
@@ -245,7 +262,7 @@ fn cut_off(path: &Path, element: &Element, found: u64, bytes: Option<u64>) -> Po
     let size = element.record_size().filter(|_| bytes.is_some());
     PointsError::CutOff {
         path: path.into(),
-        element: element.name.clone(),
+        what: format!("of element '{}'", element.name),
         declared: element.count,
         found,
         bytes_declared: size.map(|size| u128::from(element.count) * size as u128),
@@ -273,7 +290,7 @@ impl Wrong<'_> {
             Self::Long { values } => (format!("{words} values"), format!("the {values} values")),
             Self::Word { word, property, kind } => (
                 Quoted(word).to_string(),
-                format!("a number of type {} for property '{property}'", kind.name()),
+                format!("a number of type {} for property '{property}'", type_name(*kind)),
             ),
         }
     }
@@ -283,8 +300,9 @@ impl Wrong<'_> {
 fn text_record<'a>(
     properties: &'a [Property],
     mut words: impl Iterator<Item = &'a [u8]>,
-    row: &mut [f64],
+    row: &mut Vec<f64>,
 ) -> Result<(), Wrong<'a>> {
+    row.clear();
     let mut values = 0;
     let mut next = |property: &'a Property, kind: Type, least: f64| {
         let name = property.name.as_str();
@@ -296,9 +314,9 @@ fn text_record<'a>(
             kind,
         })
     };
-    for (value, property) in row.iter_mut().zip(properties) {
+    for property in properties {
         match property.kind {
-            Kind::Number(kind) => *value = next(property, kind, f64::NEG_INFINITY)?,
+            Kind::Number(kind) => row.push(next(property, kind, f64::NEG_INFINITY)?),
             Kind::List { length, item } => {
                 for _ in 0..next(property, length, 0.0)? as u64 {
                     next(property, item, f64::NEG_INFINITY)?;
@@ -309,28 +327,6 @@ fn text_record<'a>(
     match words.next() {
         Some(_) => Err(Wrong::Long { values }),
         None => Ok(()),
-    }
-}
-
-/// The number that starts a slice of at least its size.
-fn number<const BIG: bool>(kind: Type, bytes: &[u8]) -> f64 {
-    macro_rules! read {
-        ($type:ty) => {{
-            let mut array = [0; size_of::<$type>()];
-            array.copy_from_slice(&bytes[..size_of::<$type>()]);
-            let read = if BIG { <$type>::from_be_bytes } else { <$type>::from_le_bytes };
-            f64::from(read(array))
-        }};
-    }
-    match kind {
-        Type::I8 => read!(i8),
-        Type::U8 => read!(u8),
-        Type::I16 => read!(i16),
-        Type::U16 => read!(u16),
-        Type::I32 => read!(i32),
-        Type::U32 => read!(u32),
-        Type::F32 => read!(f32),
-        Type::F64 => read!(f64),
     }
 }
 

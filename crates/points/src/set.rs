@@ -1,5 +1,8 @@
 //! A point set as a file holds it.
 
+use crate::field::Type;
+use std::collections::TryReserveError;
+
 /// Positions and attributes of one point file, in the file's own coordinates.
 ///
 /// All lists are of one length, at most `u32::MAX`: one entry for each point kept, in the order of
@@ -17,10 +20,16 @@ pub struct PointSet {
     pub color_encoding: Option<ColorEncoding>,
     /// Normals as the file has them: of any length, pointing either way.
     pub normals: Option<Vec<[f32; 3]>>,
-    /// Every other number of a point, in the order of the file.
+    /// Every other number of a point that was asked for, in the order of the file.
     pub attributes: Vec<Attribute>,
+    /// Names of the attributes that the file has and nobody asked for.
+    pub left_out: Vec<String>,
     /// How many points were dropped for a coordinate that is infinite or not a number.
     pub non_finite: u64,
+    /// How many points were dropped because the file itself calls them invalid.
+    pub invalid: u64,
+    /// How many points with a usable position the filter left out.
+    pub filtered_out: u64,
     /// The file format in words, such as `PLY 1.0, binary little-endian`.
     pub format: String,
 }
@@ -34,13 +43,34 @@ pub struct Attribute {
     pub values: Values,
 }
 
-/// Values in the smallest float type that holds the file's type exactly.
+/// Values in the type that the file stores them in; integers of 64 bits become floats.
 #[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
 pub enum Values {
-    /// From 8- and 16-bit integers and 32-bit floats.
+    I8(Vec<i8>),
+    U8(Vec<u8>),
+    I16(Vec<i16>),
+    U16(Vec<u16>),
+    I32(Vec<i32>),
+    U32(Vec<u32>),
     F32(Vec<f32>),
-    /// From 32-bit integers and 64-bit floats.
     F64(Vec<f64>),
+}
+
+/// Does the same to the list of values of any type.
+macro_rules! each_type {
+    ($values:expr, $list:ident => $result:expr) => {
+        match $values {
+            Values::I8($list) => $result,
+            Values::U8($list) => $result,
+            Values::I16($list) => $result,
+            Values::U16($list) => $result,
+            Values::I32($list) => $result,
+            Values::U32($list) => $result,
+            Values::F32($list) => $result,
+            Values::F64($list) => $result,
+        }
+    };
 }
 
 /// How a file stores colours.
@@ -55,6 +85,16 @@ pub enum ColorEncoding {
 }
 
 impl PointSet {
+    /// Number of points in the file.
+    pub fn in_file(&self) -> u64 {
+        self.positions.len() as u64 + self.non_finite + self.invalid + self.filtered_out
+    }
+
+    /// Number of points that were dropped as unusable.
+    pub fn dropped(&self) -> u64 {
+        self.non_finite + self.invalid
+    }
+
     /// Number of points.
     pub fn len(&self) -> usize {
         self.positions.len()
@@ -73,16 +113,10 @@ impl PointSet {
     /// The points that are to be kept, by their place in this set.
     #[must_use]
     pub fn filtered(&self, keep: impl Fn(usize) -> bool) -> Self {
-        fn kept<T: Copy>(values: &[T], keep: &dyn Fn(usize) -> bool) -> Vec<T> {
-            (0..).zip(values).filter_map(|(i, &value)| keep(i).then_some(value)).collect()
-        }
         let keep: &dyn Fn(usize) -> bool = &keep;
         let attributes = self.attributes.iter().map(|attribute| Attribute {
             name: attribute.name.clone(),
-            values: match &attribute.values {
-                Values::F32(values) => Values::F32(kept(values, keep)),
-                Values::F64(values) => Values::F64(kept(values, keep)),
-            },
+            values: attribute.values.kept(keep),
         });
         Self {
             positions: kept(&self.positions, keep),
@@ -91,7 +125,10 @@ impl PointSet {
             color_encoding: self.color_encoding,
             normals: self.normals.as_ref().map(|normals| kept(normals, keep)),
             attributes: attributes.collect(),
+            left_out: self.left_out.clone(),
             non_finite: self.non_finite,
+            invalid: self.invalid,
+            filtered_out: self.filtered_out,
             format: self.format.clone(),
         }
     }
@@ -107,13 +144,50 @@ impl PointSet {
     }
 }
 
+fn kept<T: Copy>(values: &[T], keep: &dyn Fn(usize) -> bool) -> Vec<T> {
+    (0..).zip(values).filter_map(|(i, &value)| keep(i).then_some(value)).collect()
+}
+
 impl Values {
+    /// No values yet, of a file's type.
+    pub(crate) fn of(kind: Type) -> Self {
+        match kind {
+            Type::I8 => Self::I8(Vec::new()),
+            Type::U8 => Self::U8(Vec::new()),
+            Type::I16 => Self::I16(Vec::new()),
+            Type::U16 => Self::U16(Vec::new()),
+            Type::I32 => Self::I32(Vec::new()),
+            Type::U32 => Self::U32(Vec::new()),
+            Type::F32 => Self::F32(Vec::new()),
+            Type::I64 | Type::U64 | Type::F64 => Self::F64(Vec::new()),
+        }
+    }
+
+    /// Adds a value that the type holds; else the nearest that it does.
+    pub(crate) fn push(&mut self, value: f64) {
+        each_type!(self, list => list.push(value as _));
+    }
+
+    pub(crate) fn try_reserve_exact(&mut self, count: usize) -> Result<(), TryReserveError> {
+        each_type!(self, list => list.try_reserve_exact(count))
+    }
+
+    fn kept(&self, keep: &dyn Fn(usize) -> bool) -> Self {
+        match self {
+            Self::I8(list) => Self::I8(kept(list, keep)),
+            Self::U8(list) => Self::U8(kept(list, keep)),
+            Self::I16(list) => Self::I16(kept(list, keep)),
+            Self::U16(list) => Self::U16(kept(list, keep)),
+            Self::I32(list) => Self::I32(kept(list, keep)),
+            Self::U32(list) => Self::U32(kept(list, keep)),
+            Self::F32(list) => Self::F32(kept(list, keep)),
+            Self::F64(list) => Self::F64(kept(list, keep)),
+        }
+    }
+
     /// Number of values, one a point.
     pub fn len(&self) -> usize {
-        match self {
-            Self::F32(values) => values.len(),
-            Self::F64(values) => values.len(),
-        }
+        each_type!(self, list => list.len())
     }
 
     /// Whether there are no values.
@@ -125,11 +199,9 @@ impl Values {
     ///
     /// # Panics
     /// If there is no such point.
+    #[allow(clippy::useless_conversion, reason = "one arm of several is of f64")]
     pub fn get(&self, index: usize) -> f64 {
-        match self {
-            Self::F32(values) => f64::from(values[index]),
-            Self::F64(values) => values[index],
-        }
+        each_type!(self, list => f64::from(list[index]))
     }
 
     /// All values, in the order of the points.
@@ -171,7 +243,7 @@ impl ColorEncoding {
 }
 
 /// The sRGB curve of IEC 61966-2-1, from the stored 0..=1 to linear light.
-fn linear_from_srgb(v: f64) -> f64 {
+pub(crate) fn linear_from_srgb(v: f64) -> f64 {
     if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 

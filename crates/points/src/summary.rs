@@ -13,6 +13,8 @@ pub struct PointSummary {
     pub points: u64,
     /// Points that were dropped.
     pub dropped: Dropped,
+    /// Points with a finite position that a filter left out.
+    pub filtered_out: u64,
     /// Smallest coordinate along each axis.
     pub min: [f64; 3],
     /// Largest coordinate along each axis.
@@ -29,6 +31,15 @@ pub struct PointSummary {
 pub struct Dropped {
     /// For a coordinate that is infinite or not a number.
     pub non_finite: u64,
+    /// Because the file itself calls them invalid.
+    pub invalid: u64,
+}
+
+impl Dropped {
+    /// In all.
+    pub fn count(self) -> u64 {
+        self.non_finite + self.invalid
+    }
 }
 
 /// Smallest and largest of some values, of those that are numbers; `None` if none is.
@@ -59,7 +70,8 @@ impl PointSummary {
         Self {
             format: set.format.clone(),
             points: set.len() as u64,
-            dropped: Dropped { non_finite: set.non_finite },
+            dropped: Dropped { non_finite: set.non_finite, invalid: set.invalid },
+            filtered_out: set.filtered_out,
             min,
             max,
             attributes,
@@ -67,12 +79,21 @@ impl PointSummary {
         }
     }
 
+    /// The middle of the box, which a render of these points alone subtracts from them before it goes
+    /// on in 32 bits.
+    pub fn origin(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| 0.5 * self.min[axis] + 0.5 * self.max[axis])
+    }
+
     /// The summary as `pointillist info --json` prints it. What JSON has no number for is `null`.
     pub fn to_json(&self) -> Value {
-        let mut reasons = Map::new();
-        if self.dropped.non_finite > 0 {
-            reasons.insert("non-finite position".to_owned(), json!(self.dropped.non_finite));
-        }
+        let Dropped { non_finite, invalid } = self.dropped;
+        let reasons: Map<String, Value> =
+            [("non-finite position", non_finite), ("invalid", invalid)]
+                .into_iter()
+                .filter(|&(_, count)| count > 0)
+                .map(|(reason, count)| (reason.to_owned(), json!(count)))
+                .collect();
         let attributes: Map<String, Value> = self
             .attributes
             .iter()
@@ -85,8 +106,10 @@ impl PointSummary {
         json!({
             "format": self.format,
             "points": self.points,
-            "dropped": { "count": self.dropped.non_finite, "reasons": reasons },
+            "filtered_out": self.filtered_out,
+            "dropped": { "count": self.dropped.count(), "reasons": reasons },
             "bounds": { "min": self.min, "max": self.max },
+            "origin": self.origin(),
             "attributes": attributes,
             "spacing": self.spacing,
         })
@@ -163,13 +186,20 @@ impl fmt::Display for PointSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let corner = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
         writeln!(f, "format   {}", self.format)?;
-        writeln!(f, "points   {}", self.points)?;
-        let dropped = self.dropped.non_finite;
-        if dropped > 0 {
-            writeln!(f, "dropped  {dropped} (position infinite or not a number)")?;
+        match self.filtered_out {
+            0 => writeln!(f, "points   {}", self.points)?,
+            out => writeln!(f, "points   {} of {}", self.points, self.points + out)?,
+        }
+        let Dropped { non_finite, invalid } = self.dropped;
+        if non_finite > 0 {
+            writeln!(f, "dropped  {non_finite} (position infinite or not a number)")?;
+        }
+        if invalid > 0 {
+            writeln!(f, "dropped  {invalid} (marked invalid in the file)")?;
         }
         writeln!(f, "min      {}", corner(self.min))?;
         writeln!(f, "max      {}", corner(self.max))?;
+        writeln!(f, "origin   {} (subtracted by a render)", corner(self.origin()))?;
         match self.spacing {
             Some(spacing) => write!(f, "spacing  {spacing} (median to the nearest other point)")?,
             None => write!(f, "spacing  none (a single point)")?,
@@ -216,6 +246,7 @@ mod tests {
             ],
             non_finite: 1,
             format: "PLY 1.0, ascii".to_owned(),
+            ..PointSet::default()
         }
     }
 
@@ -225,8 +256,10 @@ mod tests {
         let expected = json!({
             "format": "PLY 1.0, ascii",
             "points": 2,
+            "filtered_out": 0,
             "dropped": { "count": 1, "reasons": { "non-finite position": 1 } },
             "bounds": { "min": [0.5, -2.0, 0.1], "max": [1.0, 4.0, 636_001.76] },
+            "origin": [0.75, 1.0, 318_000.93],
             "spacing": 0.25,
         });
         let mut others = json.clone();

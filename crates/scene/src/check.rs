@@ -182,7 +182,7 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
         Ok(())
     };
     match (kind, &node.value) {
-        (Kind::Announced, _) | (Kind::Bool, Value::Bool(_)) => Ok(()),
+        (Kind::Bool, Value::Bool(_)) => Ok(()),
         (Kind::Integer { min, max, .. }, Value::Integer(found)) => {
             within(*found as f64, *min as f64, *max as f64)
                 .map_err(|advice| wrong(format!("{advice}{}", or_default(key))))
@@ -209,6 +209,36 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
             elements(2, &|item| element(item, range))?;
             let ends: Vec<Option<f64>> = node.items().iter().map(as_number).collect();
             if ends[0] < ends[1] { Ok(()) } else { Err(wrong("raise the second".into())) }
+        }
+        (Kind::Ranges(range), Value::Table(entries)) => {
+            for entry in entries {
+                let within = |inner: &str| format!(".{}{inner}", shown_name(&entry.name));
+                let items = entry.node.items();
+                let wrong = |message: String, origin: Origin, inner: &str| Wrong {
+                    within: within(inner),
+                    origin,
+                    message,
+                };
+                let two = || {
+                    let found = &entry.node.shown;
+                    let message = format!(
+                        "found {found}, expected two numbers {range}, the second no less than the \
+                         first; write e.g. [0, 100]"
+                    );
+                    wrong(message, entry.node.origin, "")
+                };
+                if items.len() != 2 {
+                    return Err(two());
+                }
+                for (index, item) in items.iter().enumerate() {
+                    element(item, range)
+                        .map_err(|message| wrong(message, item.origin, &format!("[{index}]")))?;
+                }
+                if as_number(&items[0]) > as_number(&items[1]) {
+                    return Err(two());
+                }
+            }
+            Ok(())
         }
         (Kind::Prefixed(before, _), Value::Text(found)) => {
             match found.strip_prefix(before).map(str::trim) {

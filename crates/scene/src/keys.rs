@@ -5,8 +5,8 @@
 
 use crate::read::Reader;
 use crate::whole::{
-    background_is_one, camera_has_a_view, direction_has_a_length, material_has_one_color,
-    stops_ascend, volume_says_it_once,
+    background_is_one, box_has_an_inside, camera_has_a_view, direction_has_a_length,
+    material_has_one_color, stops_ascend, volume_says_it_once,
 };
 
 /// A key's name and what is wrong with its value.
@@ -94,8 +94,8 @@ pub(crate) enum Kind {
         of: &'static Kind,
         max: usize,
     },
-    /// Announced for later, form not fixed.
-    Announced,
+    /// A table of any names, each with two numbers, the second no less than the first.
+    Ranges(Numbers),
 }
 
 /// A closed range and its unit, which may be empty.
@@ -116,6 +116,7 @@ pub(crate) const fn numbers(min: f64, max: f64, unit: &'static str) -> Numbers {
 }
 
 const POSITION: Kind = Kind::Vector(numbers(-LARGE, LARGE, "scene units"));
+const FILE_POSITION: Kind = Kind::Vector(numbers(-LARGE, LARGE, "units of the file"));
 const RADIANCE: Kind = Kind::Vector(numbers(0.0, LARGE, "W sr⁻¹ m⁻², linear RGB"));
 const SHARE: Kind = Kind::Vector(numbers(0.0, 1.0, "in linear RGB"));
 const LENGTH: Kind = Kind::Number(numbers(SHORT, LARGE, "scene units"));
@@ -132,10 +133,6 @@ const fn key_of(
     doc: &'static str,
 ) -> Key {
     Key { name, kind, absent, doc, only: Some(only) }
-}
-
-const fn announced(name: &'static str, doc: &'static str) -> Key {
-    key(name, Kind::Announced, Words("none", "0"), doc)
 }
 
 pub(crate) const fn count(min: i64, max: i64, unit: &'static str) -> Kind {
@@ -400,7 +397,56 @@ pub(crate) static OBJECTS: Table = Table {
         key("surface", Kind::Table(&SURFACE), Absent::Table, SURFACE.doc),
         key("material", Kind::Table(&MATERIAL), Absent::Table, MATERIAL.doc),
         key("volume", Kind::Table(&VOLUME), Words("a pure surface", "{}"), VOLUME.doc),
-        announced("filter", "Which points of the file to take."),
+        key("filter", Kind::Table(&FILTER), Absent::Table, FILTER.doc),
+    ],
+};
+
+pub(crate) static FILTER: Table = Table {
+    header: "[objects.filter]",
+    doc: "Which points of the file are taken. The conditions apply in this order while the file is \
+          read; what is left out takes no memory. Coordinates and lengths are the file's. How many \
+          points were kept, of how many, is said on the terminal, by `info` and in `--stats`.",
+    whole: None,
+    keys: &[
+        key(
+            "every",
+            count(1, u32::MAX as i64, "points"),
+            Value("1"),
+            "The first point of the file and every so manieth after it, whatever the other \
+             conditions leave out.",
+        ),
+        key("box", Kind::Table(&FILTER_BOX), Words("everywhere", "{}"), FILTER_BOX.doc),
+        key(
+            "range",
+            Kind::Ranges(numbers(-LARGE, LARGE, "")),
+            Words("any", "{ intensity = [100, 2000], z = [0, 50] }"),
+            "Least and greatest value of attributes, or of x, y and z; both are taken. `info` lists \
+             the attributes of a file. What is no number is left out.",
+        ),
+        key(
+            "classification",
+            Kind::List { of: &Kind::Integer { min: 0, max: 255, unit: "" }, max: 256 },
+            Words("any", "[2, 6]"),
+            "Values of the attribute `classification` that are taken: of LAS, 2 is ground, 6 \
+             buildings.",
+        ),
+        key(
+            "voxel",
+            Kind::Number(numbers(SHORT, LARGE, "units of the file")),
+            Words("none", "0.1"),
+            "Edge of cubes, counted from the origin of the file's coordinates, of each of which one \
+             point is taken: the first in the file that meets all other conditions.",
+        ),
+    ],
+};
+
+pub(crate) static FILTER_BOX: Table = Table {
+    header: "[objects.filter.box]",
+    doc: "A box along the axes of the file's coordinates; its faces belong to it.",
+    whole: Some(box_has_an_inside),
+    keys: &[
+        key("min", FILE_POSITION, Required("[0.0, 0.0, 0.0]"), "The lowest corner."),
+        key("max", FILE_POSITION, Required("[10.0, 10.0, 5.0]"), "The highest corner."),
     ],
 };
 
@@ -771,7 +817,9 @@ impl Kind {
             Kind::Tables { min: 0, max, .. } => format!("a list of up to {max} tables"),
             Kind::Tables { min, max, .. } => format!("a list of {min} to {max} tables"),
             Kind::List { of, max } => format!("a list of 1 to {max}, each {}", of.expected()),
-            Kind::Announced => "a value whose form is not fixed yet".into(),
+            Kind::Ranges(n) => {
+                format!("a table of names, each with two numbers {n}, the second no less")
+            }
         }
     }
 }

@@ -7,9 +7,9 @@ use crate::models::{self, MODELS_VARIABLE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
-    ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, Polynomial,
-    Primary, Projection, RayLoop, Refine, RenderSettings, Scene, SceneError, Stop, Surface,
-    TextureAxis, Transfer, Transform, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
+    ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, PointFilter,
+    Polynomial, Primary, Projection, RayLoop, Refine, RenderSettings, Scene, SceneError, Stop,
+    Surface, TextureAxis, Transfer, Transform, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
 };
 use std::env;
 use std::fs::{self, File};
@@ -333,11 +333,27 @@ impl Object {
             name,
             points,
             points_as_written: written,
+            filter: PointFilter::read(&table.table("filter", &keys::FILTER)),
             transform: Transform::read(&table.table("transform", &keys::TRANSFORM)),
             surface: Surface::read(&table.table("surface", &keys::SURFACE)),
             material: Material::read(&table.table("material", &keys::MATERIAL), folder),
             volume: (table.written("volume"))
                 .map(|_| Volume::read(&table.table("volume", &keys::VOLUME))),
+        }
+    }
+}
+
+impl PointFilter {
+    fn read(table: &Reader<'_>) -> Self {
+        Self {
+            every: table.count("every"),
+            bounds: table.written("box").map(|_| {
+                let corners = table.table("box", &keys::FILTER_BOX);
+                ["min", "max"].map(|corner| corners.vector(corner))
+            }),
+            ranges: table.written_ranges("range"),
+            classes: table.written_counts("classification"),
+            voxel: table.written("voxel").map(|_| table.number("voxel")),
         }
     }
 }

@@ -89,6 +89,36 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Names with two numbers each, those that are written.
+    pub(crate) fn written_ranges(&self, name: &str) -> Vec<(String, [f64; 2])> {
+        let Some(node) = self.written(name) else { return Vec::new() };
+        let Value::Table(entries) = &node.value else {
+            self.unlike("a table of ranges", name, &node.value)
+        };
+        let range = |node: &Node| match node.items() {
+            [low, high] => to_number(&low.value).zip(to_number(&high.value)).map(Into::into),
+            _ => None,
+        };
+        entries
+            .iter()
+            .map(|entry| match range(&entry.node) {
+                Some(range) => (entry.name.clone(), range),
+                None => self.unlike("a range", &entry.name, &entry.node.value),
+            })
+            .collect()
+    }
+
+    /// Counts, where they are written.
+    pub(crate) fn written_counts(&self, name: &str) -> Option<Vec<u32>> {
+        let node = self.written(name)?;
+        let count = |item: &Node| match item.value {
+            Value::Integer(integer) => u32::try_from(integer).ok(),
+            _ => None,
+        };
+        let counts: Option<Vec<u32>> = node.items().iter().map(count).collect();
+        Some(counts.unwrap_or_else(|| self.unlike("counts", name, &node.value)))
+    }
+
     /// A number or two, twice the one.
     pub(crate) fn pair(&self, name: &str) -> [f64; 2] {
         let value = self.value(name);

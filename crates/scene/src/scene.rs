@@ -181,6 +181,8 @@ pub struct Object {
     pub points: PathBuf,
     /// The point file as the scene file names it, for headers: it says nothing about the machine.
     pub points_as_written: String,
+    /// Which points of the file are taken.
+    pub filter: PointFilter,
     /// From the file's coordinates to the world's.
     pub transform: Transform,
     /// How the surface is fitted.
@@ -189,6 +191,22 @@ pub struct Object {
     pub material: Material,
     /// A volume made of the points; `None`: the object is a pure surface.
     pub volume: Option<Volume>,
+}
+
+/// Which points of a file are taken. Conditions apply in the order of the fields. Coordinates and
+/// lengths are the file's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointFilter {
+    /// The first point of the file and every so manieth after it, from 1.
+    pub every: u32,
+    /// Lowest and highest corner of a box, each coordinate -1e15 to 1e15.
+    pub bounds: Option<[[f64; 3]; 2]>,
+    /// Attributes, or `x`, `y`, `z`, with their least and greatest values, -1e15 to 1e15.
+    pub ranges: Vec<(String, [f64; 2])>,
+    /// Values of `classification`, 0 to 255.
+    pub classes: Option<Vec<u32>>,
+    /// Edge of cubes with one point each, 1e-12 to 1e15.
+    pub voxel: Option<f64>,
 }
 
 /// A volume made of an object's points (docs/method.md, section 7). Lengths are scene units.

@@ -92,7 +92,12 @@ fn kind(of: &Kind, path: &str) -> Map<String, Json> {
             let file = json!({ "type": "string", "minLength": 1 });
             as_map(if *in_file { json!({ "anyOf": [list, file] }) } else { list })
         }
-        Kind::Announced => Map::new(),
+        Kind::Ranges(range) => as_map(json!({
+            "type": "object",
+            "additionalProperties": {
+                "type": "array", "items": number(range), "minItems": 2, "maxItems": 2,
+            },
+        })),
         Kind::Bool => as_map(json!({ "type": "boolean" })),
         Kind::Integer { min, max, .. } => {
             as_map(json!({ "type": "integer", "minimum": min, "maximum": max }))

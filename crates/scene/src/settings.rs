@@ -2,8 +2,8 @@
 
 use crate::{
     Albedo, Boundary, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Normals, Object,
-    PerParticle, Polynomial, Projection, Refine, RenderSettings, Scene, Surface, TextureAxis,
-    Transfer, Volume, VolumeKernel, VolumeMode, VolumeShading,
+    PerParticle, PointFilter, Polynomial, Projection, Refine, RenderSettings, Scene, Surface,
+    TextureAxis, Transfer, Volume, VolumeKernel, VolumeMode, VolumeShading,
 };
 use std::fmt::{self, Write};
 
@@ -103,6 +103,7 @@ fn write_object(out: &mut String, object: &Object) -> fmt::Result {
     writeln!(out, "\n[[objects]]")?;
     writeln!(out, "name = {}", quoted(&object.name))?;
     writeln!(out, "points = {}", quoted(&object.points_as_written))?;
+    write_filter(out, &object.filter)?;
     writeln!(out, "\n[objects.transform]")?;
     writeln!(out, "scale = {:?}", object.transform.scale)?;
     writeln!(out, "rotate = {:?}", object.transform.rotate)?;
@@ -113,6 +114,26 @@ fn write_object(out: &mut String, object: &Object) -> fmt::Result {
         Some(volume) => write_volume(out, volume),
         None => Ok(()),
     }
+}
+
+fn write_filter(out: &mut String, filter: &PointFilter) -> fmt::Result {
+    writeln!(out, "\n[objects.filter]")?;
+    writeln!(out, "every = {}", filter.every)?;
+    if !filter.ranges.is_empty() {
+        let range = |(name, range): &(String, [f64; 2])| format!("{} = {range:?}", quoted(name));
+        let ranges: Vec<String> = filter.ranges.iter().map(range).collect();
+        writeln!(out, "range = {{ {} }}", ranges.join(", "))?;
+    }
+    if let Some(classes) = &filter.classes {
+        writeln!(out, "classification = {classes:?}")?;
+    }
+    if let Some(voxel) = filter.voxel {
+        writeln!(out, "voxel = {voxel:?}")?;
+    }
+    if let Some([min, max]) = filter.bounds {
+        writeln!(out, "\n[objects.filter.box]\nmin = {min:?}\nmax = {max:?}")?;
+    }
+    Ok(())
 }
 
 fn write_volume(out: &mut String, volume: &Volume) -> fmt::Result {

@@ -50,6 +50,12 @@ radius = 0.25
 [[objects]]
 name = "the \"knot\" \\ ∂"
 points = "points/knot.ply"
+[objects.filter]
+every = 3
+box = { min = [-1, 0, 4.9e6], max = [1, 0.5, 4.9e6] }
+range = { intensity = [100, 2000.5], "odd name" = [2, 2] }
+classification = [2, 6]
+voxel = 0.05
 [objects.transform]
 scale = 2.5
 rotate = [10.0, 90.0, -5.5]
@@ -229,6 +235,13 @@ fn every_built_key_is_read() {
         name: "the \"knot\" \\ ∂".into(),
         points: PathBuf::from("scenes/points/knot.ply"),
         points_as_written: "points/knot.ply".into(),
+        filter: PointFilter {
+            every: 3,
+            bounds: Some([[-1.0, 0.0, 4.9e6], [1.0, 0.5, 4.9e6]]),
+            ranges: vec![("intensity".into(), [100.0, 2000.5]), ("odd name".into(), [2.0, 2.0])],
+            classes: Some(vec![2, 6]),
+            voxel: Some(0.05),
+        },
         transform: Transform {
             scale: 2.5,
             rotate: [10.0, 90.0, -5.5],
@@ -530,10 +543,34 @@ fn a_transfer_function_comes_from_a_file_of_its_own() {
 }
 
 #[test]
-fn what_is_not_built_says_so_and_is_not_ignored() {
-    let error = error_with(FULL, &["objects.0.filter=x"]);
-    assert!(error.contains(": objects[0].filter: known but not built yet; "), "{error}");
-    assert!(!error.contains('\n'), "{error}");
+fn filters_are_checked() {
+    for (set, expected) in [
+        ("every=0", "objects[0].filter.every: found 0, expected an integer from 1 to 4294967295"),
+        ("every=1.5", "objects[0].filter.every: found 1.5, expected an integer"),
+        ("evry=2", "objects[0].filter.evry: unknown key; did you mean 'every'?"),
+        ("box={ min = [0, 0, 0] }", "objects[0].filter.box.max: missing, expected three numbers"),
+        (
+            "box={ min = [0, 0, 0], max = [1, -1, 1] }",
+            "objects[0].filter.box.max: found -1 along y, expected at least min's, 0; raise it",
+        ),
+        ("box.min=[2, 0, 4.9e6]", "objects[0].filter.box.max: found 1 along x"),
+        ("range=3", "objects[0].filter.range: found 3, expected a table of names, each with two"),
+        ("range={ z = 3 }", "objects[0].filter.range.z: found 3, expected two numbers"),
+        ("range={ z = [1, 2, 3] }", "filter.range.z: found a list of 3, expected two numbers"),
+        ("range.z=[2, 1]", "filter.range.z: found a list of 2, expected two numbers"),
+        ("range={ z = [0, inf] }", "objects[0].filter.range.z[1]: found inf, expected a number"),
+        ("classification=2", "objects[0].filter.classification: found 2, expected a list of 1 to"),
+        ("classification=[]", "objects[0].filter.classification: found a list of 0, expected"),
+        ("classification=[256]", "classification[0]: found 256, expected an integer from 0 to 255"),
+        ("voxel=0", "objects[0].filter.voxel: found 0, expected a number from 1e-12 to 1e15 units"),
+        ("voxel=\"auto\"", "objects[0].filter.voxel: found the string \"auto\", expected a number"),
+    ] {
+        let error = error_with(FULL, &[&format!("objects.0.filter.{set}")]);
+        assert!(error.contains(expected), "{error}\nlacks {expected}");
+    }
+    let set = ["objects.1.filter.every=10", "objects.1.filter.range.z=[0, 1]"];
+    let filter = &read_with(FULL, &set).unwrap().objects[1].filter;
+    assert_eq!((filter.every, filter.ranges.len(), filter.voxel), (10, 1, None));
 }
 
 #[test]
@@ -919,8 +956,6 @@ fn schema_states_every_key_and_allows_no_other() {
     assert_eq!(trust["default"], 0.6);
     let ray_loop = &schema["properties"]["render"]["properties"]["loop"];
     assert_eq!(ray_loop["enum"], serde_json::json!(["images", "queue", "auto"]));
-    let filter = &schema["properties"]["objects"]["items"]["properties"]["filter"];
-    assert!(filter["description"].as_str().unwrap().contains("not built yet"), "{filter}");
 }
 
 #[test]

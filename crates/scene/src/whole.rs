@@ -70,6 +70,22 @@ fn lens_is_no_wider_than_rays_can_bear(camera: &Reader<'_>, target: f64) -> Resu
     Ok(())
 }
 
+/// No corner of a box is beyond the other.
+pub(crate) fn box_has_an_inside(table: &Reader<'_>) -> Result<(), Fault> {
+    let (min, max) = (table.vector("min"), table.vector("max"));
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        if max[axis] < min[axis] {
+            let message = format!(
+                "found {} along {name}, expected at least min's, {}; raise it",
+                plain(max[axis]),
+                plain(min[axis])
+            );
+            return Err(("max", message));
+        }
+    }
+    Ok(())
+}
+
 /// The direction of a directional light is long enough to be normalised.
 pub(crate) fn direction_has_a_length(light: &Reader<'_>) -> Result<(), Fault> {
     match light.text("kind").as_str() {

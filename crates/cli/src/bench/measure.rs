@@ -58,7 +58,8 @@ fn timed(
     memory::require_picture(input.window(None)?, &[], 0)?;
     let sets = input.read_points(progress)?;
     go_on()?;
-    let dropped = sets.iter().map(|set| set.non_finite).sum();
+    let dropped = sets.iter().map(|set| set.dropped()).sum();
+    let filtered_out = sets.iter().map(|set| set.filtered_out).sum();
     let plan = input.plan(&sets, None, progress)?;
     drop(sets);
     go_on()?;
@@ -92,6 +93,7 @@ fn timed(
         trace: &times.trace,
         wall: &times.wall,
         dropped,
+        filtered_out,
     });
     Ok(Row {
         suite: case.suite.clone(),

@@ -8,7 +8,7 @@ use crate::input::{self, Input, SceneValues};
 use crate::progress::Progress;
 use plan::Plan;
 use points::neighbors::median_spacing;
-use points::{PointSet, PointSummary, Watch};
+use points::{PointSet, PointSummary, ReadOptions, Watch};
 use scene::{Light, Projection, Scene};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -22,7 +22,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     } else if info_picture::is_picture(&args.file) {
         info_picture::of(&args.file, args.json)?
     } else {
-        let set = input::read_file(&args.file, &progress)?;
+        let set = input::read_file(&args.file, &ReadOptions::default(), &progress)?;
         let summary = summarize(&set, &progress);
         if args.json { pretty(&summary.to_json()) } else { format!("{summary}\n") }
     };
@@ -32,7 +32,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
 
 fn of_scene(args: &InfoArgs, progress: &Progress) -> Result<String, Failure> {
     let input = Input::load(&args.file, &SceneValues::default(), None)?;
-    let sets = input.read_points(progress)?;
+    let sets = input.read_all(progress)?;
     let plan = input.plan(&sets, None, progress)?;
     let mut summaries: Vec<Arc<PointSummary>> = Vec::new();
     for (index, set) in sets.iter().enumerate() {
@@ -91,6 +91,7 @@ fn scene_json(scene: &Scene, plan: &Plan, summaries: &[Arc<PointSummary>]) -> Va
         "lights": scene.lights.len(),
         "points": plan.point_count,
         "bounds": { "min": min, "max": max },
+        "origin": plan.cloud.origin,
         "objects": objects,
         "settings": scene.settings_toml(),
     })
@@ -132,6 +133,7 @@ fn write_scene(
     writeln!(text, "points   {}", plan.point_count)?;
     writeln!(text, "min      {}", corner(plan.cloud.bounds[0]))?;
     writeln!(text, "max      {}", corner(plan.cloud.bounds[1]))?;
+    writeln!(text, "origin   {} (subtracted before 32-bit arithmetic)", corner(plan.cloud.origin))?;
     for ((object, summary), index) in scene.objects.iter().zip(summaries).zip(0..) {
         writeln!(text, "\nobject {index} '{}', {}", object.name, object.points.display())?;
         for line in summary.to_string().lines() {

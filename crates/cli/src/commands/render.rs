@@ -67,7 +67,8 @@ fn render(
 ) -> Result<(), Failure> {
     let started = Instant::now();
     let sets = input.read_points(progress)?;
-    let non_finite: u64 = sets.iter().map(|set| set.non_finite).sum();
+    let dropped: u64 = sets.iter().map(|set| set.dropped()).sum();
+    let filtered_out = sets.iter().map(|set| set.filtered_out).sum();
     let mut plan = input.plan(&sets, args.crop, progress)?;
     plan.diagnostics = diagnostics;
     for (name, count) in plan.names.iter().zip(&plan.isolated).filter(|(_, count)| **count > 0) {
@@ -97,7 +98,8 @@ fn render(
             frame: &frame,
             trace: &[frame.trace],
             wall: &[wall],
-            dropped: non_finite + plan.isolated.iter().sum::<u64>(),
+            dropped: dropped + plan.isolated.iter().sum::<u64>(),
+            filtered_out,
         });
         files::write_json(path, &row)?;
     }

@@ -4,6 +4,7 @@
 
 mod bench;
 mod compare;
+mod filters;
 mod headers;
 mod inspect;
 mod render;

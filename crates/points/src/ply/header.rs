@@ -1,8 +1,8 @@
 //! The header of a PLY file.
 
-use crate::ply::source::{Line, Source};
-use crate::read::{PointsError, Quoted};
-use std::io::Read;
+use crate::error::{PointsError, Quoted};
+use crate::field::Type;
+use crate::source::{Line, Source};
 use std::path::Path;
 
 /// Longest line of a header.
@@ -47,19 +47,6 @@ pub(super) enum Kind {
     List { length: Type, item: Type },
 }
 
-/// A number's type. 64-bit integers are no PLY type.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Type {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
-}
-
 const TYPES: &str = "a type: char, uchar, short, ushort, int, uint, float, double, int8, uint8, \
                      int16, uint16, int32, uint32, float32 or float64";
 
@@ -96,89 +83,37 @@ impl Element {
     }
 }
 
-impl Type {
-    fn from_name(name: &str) -> Option<Self> {
-        Some(match name {
-            "char" | "int8" => Self::I8,
-            "uchar" | "uint8" => Self::U8,
-            "short" | "int16" => Self::I16,
-            "ushort" | "uint16" => Self::U16,
-            "int" | "int32" => Self::I32,
-            "uint" | "uint32" => Self::U32,
-            "float" | "float32" => Self::F32,
-            "double" | "float64" => Self::F64,
-            _ => return None,
-        })
-    }
-
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::I8 => "char",
-            Self::U8 => "uchar",
-            Self::I16 => "short",
-            Self::U16 => "ushort",
-            Self::I32 => "int",
-            Self::U32 => "uint",
-            Self::F32 => "float",
-            Self::F64 => "double",
-        }
-    }
-
-    /// In bytes.
-    pub(super) fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
-        }
-    }
-
-    pub(super) fn is_float(self) -> bool {
-        matches!(self, Self::F32 | Self::F64)
-    }
-
-    /// Smallest and largest value of the type.
-    fn limits(self) -> (f64, f64) {
-        match self {
-            Self::I8 => (i8::MIN.into(), i8::MAX.into()),
-            Self::U8 => (0.0, u8::MAX.into()),
-            Self::I16 => (i16::MIN.into(), i16::MAX.into()),
-            Self::U16 => (0.0, u16::MAX.into()),
-            Self::I32 => (i32::MIN.into(), i32::MAX.into()),
-            Self::U32 => (0.0, u32::MAX.into()),
-            Self::F32 | Self::F64 => (f64::NEG_INFINITY, f64::INFINITY),
-        }
-    }
-
-    /// A word of a text file as the value that a binary file of this type would hold. Integers may
-    /// be written as floats.
-    pub(super) fn parse(self, word: &[u8]) -> Option<f64> {
-        let text = std::str::from_utf8(word).ok()?;
-        match self {
-            Self::F32 => text.parse::<f32>().map(f64::from).ok().or_else(|| not_finite(text)),
-            Self::F64 => text.parse().ok().or_else(|| not_finite(text)),
-            _ => {
-                let (min, max) = self.limits();
-                let value: f64 = text.parse().ok()?;
-                (value >= min && value <= max && value.fract() == 0.0).then_some(value)
-            }
-        }
-    }
+/// The type of this name in a header.
+fn type_named(name: &str) -> Option<Type> {
+    Some(match name {
+        "char" | "int8" => Type::I8,
+        "uchar" | "uint8" => Type::U8,
+        "short" | "int16" => Type::I16,
+        "ushort" | "uint16" => Type::U16,
+        "int" | "int32" => Type::I32,
+        "uint" | "uint32" => Type::U32,
+        "float" | "float32" => Type::F32,
+        "double" | "float64" => Type::F64,
+        _ => return None,
+    })
 }
 
-/// The ways in which C libraries print what is not finite: `-nan(ind)`, `1.#QNAN`, `-1.#IND`,
-/// `1.#INF`.
-fn not_finite(text: &str) -> Option<f64> {
-    let text = text.trim_start_matches(['+', '-']).to_ascii_lowercase();
-    if text.starts_with("nan") || text.starts_with("1.#") { Some(f64::NAN) } else { None }
+/// The name of a type in a header. Integers of 64 bits are no PLY type.
+pub(super) fn type_name(kind: Type) -> &'static str {
+    match kind {
+        Type::I8 => "char",
+        Type::U8 => "uchar",
+        Type::I16 => "short",
+        Type::U16 => "ushort",
+        Type::I32 | Type::I64 => "int",
+        Type::U32 | Type::U64 => "uint",
+        Type::F32 => "float",
+        Type::F64 => "double",
+    }
 }
 
 /// Reads the header, up to and including its last line.
-pub(super) fn read<R: Read>(
-    source: &mut Source<'_, R>,
-    path: &Path,
-) -> Result<Header, PointsError> {
+pub(super) fn read(source: &mut Source<'_>, path: &Path) -> Result<Header, PointsError> {
     let io_error = |error| PointsError::Io { path: path.into(), source: error };
     // "ply" was seen; what follows it tells how lines end.
     let start = source.fill(5).map_err(io_error)?;
@@ -210,6 +145,7 @@ pub(super) fn read<R: Read>(
         let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
         match keyword {
             "ply" if number == 1 => (),
+            _ if number == 1 => return Err(wrong(quoted(), "'ply'")),
             "" | "comment" | "obj_info" => (),
             "format" => {
                 let expected = "'format' with ascii, binary_little_endian or binary_big_endian, \
@@ -282,13 +218,13 @@ fn parse_property(text: &str) -> Result<Property, &'static str> {
     let (kind, name) = if first == "list" {
         let (length, rest) = split_word(rest);
         let (item, name) = split_word(rest);
-        let length = Type::from_name(length).ok_or(TYPES)?;
+        let length = type_named(length).ok_or(TYPES)?;
         if length.is_float() {
             return Err("an integer type for a list's length");
         }
-        (Kind::List { length, item: Type::from_name(item).ok_or(TYPES)? }, name)
+        (Kind::List { length, item: type_named(item).ok_or(TYPES)? }, name)
     } else {
-        (Kind::Number(Type::from_name(first).ok_or(TYPES)?), rest)
+        (Kind::Number(type_named(first).ok_or(TYPES)?), rest)
     };
     if name.is_empty() {
         return Err("'property', a type, and a name");

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::set::{Attribute, ColorEncoding, Values};
-use std::io::Cursor;
+use std::io::{Cursor, Read};
 
 const ENCODINGS: [&str; 3] = ["ascii", "binary_little_endian", "binary_big_endian"];
 
@@ -54,7 +54,14 @@ fn record(encoding: &str, cells: &[Cell]) -> Vec<u8> {
 }
 
 fn read_bytes(bytes: &[u8]) -> Result<PointSet, PointsError> {
-    read(Cursor::new(bytes), Some(bytes.len() as u64), Path::new("a.ply"), &mut |_, _| ())
+    crate::read_bytes(bytes, Path::new("a.ply"), &ReadOptions::default())
+}
+
+/// The same where the length of the file is not known.
+fn read_pipe(bytes: impl Read) -> Result<PointSet, PointsError> {
+    let progress: &mut dyn FnMut(u64, u64) = &mut |_, _| ();
+    let source = Source::of_stream(bytes, progress);
+    read(source, Path::new("a.ply"), &ReadOptions::default())
 }
 
 /// Reads a file given as text, and returns the message of its error.
@@ -127,8 +134,8 @@ fn three_encodings_of_the_same_points_are_equal() {
         let decode = |stored: u8| ColorEncoding::Srgb8.decode(stored.into());
         assert_eq!(colors[..], [[1.0, decode(128), 0.0], [1.0, decode(128), decode(2)]]);
         let attributes = [
-            ("label", Values::F64(vec![-123_456_789.0, -123_456_791.0])),
-            ("alpha", Values::F32(vec![200.0, 202.0])),
+            ("label", Values::I32(vec![-123_456_789, -123_456_791])),
+            ("alpha", Values::U8(vec![200, 202])),
             ("temperature", Values::F32(vec![0.0, 2e-30])),
         ]
         .map(|(name, values)| Attribute { name: name.to_owned(), values });
@@ -316,7 +323,7 @@ fn missing_parts_are_named_with_what_is_there() {
     let no_z = message(&header.replace("float z", "float height"));
     assert!(
         no_z.contains(
-            "no number 'z', expected it among the properties of 'vertex' ('x', 'y', 'height')"
+            "no number 'z', expected it among the fields of a point ('x', 'y', 'height')"
         ),
         "{no_z}"
     );
@@ -364,10 +371,9 @@ fn headers_that_promise_too_much_fail_with_what_is_there() {
     );
 
     // The same where the length of the file is not known.
-    let (path, file) = (Path::new("a.ply"), binary("1000"));
-    let pipe = read(Cursor::new(file), None, path, &mut |_, _| ()).unwrap_err().to_string();
+    let pipe = read_pipe(Cursor::new(binary("1000"))).unwrap_err().to_string();
     assert!(pipe.contains("ends after 2 in 32 bytes"), "{pipe}");
-    let pipe = read(Cursor::new(binary("5000000000")), None, path, &mut |_, _| ());
+    let pipe = read_pipe(Cursor::new(binary("5000000000")));
     assert!(matches!(pipe, Err(PointsError::TooMany { found: 5_000_000_000, .. })));
 }
 
@@ -407,13 +413,42 @@ fn files_longer_than_a_block_are_read_whole() {
         }
         let mut last = (0, 0);
         let length = file.len() as u64;
-        let set = read(Cursor::new(file), Some(length), Path::new("a"), &mut |done, all| {
+        let mut progress = |done, all| {
             assert!(done >= last.0);
             last = (done, all);
-        });
+        };
+        let source = Source::of_file(Cursor::new(file), length, &mut progress);
+        let set = read(source, Path::new("a"), &ReadOptions::default());
         assert_eq!(last, (length, length));
         let set = set.unwrap();
         assert_eq!(set.len(), count as usize);
         assert!(set.positions.iter().flatten().enumerate().all(|(i, &value)| value == i as f64));
     }
+}
+
+#[test]
+fn gaussians_have_colors_opacity_and_scales() {
+    let names = "x y z nx ny nz f_dc_0 f_dc_1 f_dc_2 f_rest_0 f_rest_44 opacity scale_0 scale_1 \
+                 scale_2 rot_0";
+    let properties: String =
+        names.split(' ').map(|name| format!("property float {name}\n")).collect();
+    let file = format!(
+        "ply\nformat ascii 1.0\nelement vertex 2\n{properties}end_header\n\
+         1 2 3 0 0 0 0 1.772453850905516 -9 7 7 0 0 1 -1 0.5\n\
+         4 5 6 0 0 0 0 0 0 7 7 1e9 0 nan -1e9 0.5\n"
+    );
+    let set = read_bytes(file.as_bytes()).unwrap();
+    assert_eq!(set.format, "PLY 1.0, ascii, 3D Gaussians");
+    assert_eq!(set.normals, None);
+    let colors = set.colors.as_ref().unwrap();
+    // Half of full intensity, in sRGB.
+    let half = ((0.5f64 + 0.055) / 1.055).powf(2.4) as f32;
+    assert_eq!(colors[0], [half, 1.0, 0.0]);
+    let names: Vec<&str> = set.attributes.iter().map(|a| a.name.as_str()).collect();
+    assert_eq!(names, ["opacity", "scale_0", "scale_1", "scale_2", "rot_0"]);
+    let value = |name: &str, point| set.attribute(name).unwrap().get(point);
+    assert_eq!((value("opacity", 0), value("opacity", 1)), (0.5, 1.0));
+    assert_eq!((value("scale_0", 0), value("scale_2", 1)), (1.0, 0.0));
+    assert_eq!(value("scale_1", 0), f64::from(1.0f64.exp() as f32));
+    assert_eq!(value("rot_0", 1), 0.5);
 }

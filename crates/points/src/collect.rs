@@ -1,0 +1,494 @@
+//! Rows of numbers into a point set: which field is what, and where its values go.
+//!
+//! Every reader hands its points to a [`Collector`], so what is a colour, a normal or an attribute
+//! is decided here, once, by the names and types of the fields; the filter is applied here, before
+//! anything is kept.
+
+use crate::error::PointsError;
+use crate::field::{Field, Type};
+use crate::filter::Sieve;
+use crate::options::ReadOptions;
+use crate::set::{Attribute, ColorEncoding, PointSet, Values};
+use std::collections::TryReserveError;
+use std::path::Path;
+
+/// Names of a position, in any letter case.
+const POSITION: [&str; 3] = ["x", "y", "z"];
+/// Names that exporters give to the three numbers of a colour, in any letter case.
+const COLOR: [[&str; 3]; 3] =
+    [["red", "green", "blue"], ["r", "g", "b"], ["diffuse_red", "diffuse_green", "diffuse_blue"]];
+/// Names of a colour in one number, 0xAARRGGBB, of 32 bits.
+const PACKED_COLOR: [&str; 2] = ["rgb", "rgba"];
+/// Names that exporters give to the three numbers of a normal, in any letter case.
+const NORMAL: [[&str; 3]; 2] = [["nx", "ny", "nz"], ["normal_x", "normal_y", "normal_z"]];
+
+/// Takes points one by one.
+pub(crate) struct Collector<'a> {
+    path: &'a Path,
+    /// Places of x, y, z in a row.
+    position: [usize; 3],
+    color: Option<Color>,
+    normal: Option<[usize; 3]>,
+    /// Places of the attributes that are kept, in the order of `set.attributes`.
+    attributes: Vec<usize>,
+    /// `None` where the filter keeps all.
+    sieve: Option<Sieve>,
+    /// The filter, in words.
+    filter: String,
+    set: PointSet,
+}
+
+/// Where colours are, and how they become linear.
+struct Color {
+    place: ColorPlace,
+    encoding: ColorEncoding,
+    /// The linear value of each stored integer.
+    table: Vec<f32>,
+    /// Greatest number stored in any point of the file, kept or not.
+    greatest: f64,
+}
+
+enum ColorPlace {
+    Three([usize; 3]),
+    /// One number, 0xAARRGGBB.
+    Packed(usize),
+}
+
+impl<'a> Collector<'a> {
+    /// Decides what each field of a row is. A row has one number for each of `fields`, in order.
+    ///
+    /// Fails if there is no position, or a name that the filter asks for is missing.
+    pub(crate) fn new(
+        fields: &[Field],
+        path: &'a Path,
+        options: &ReadOptions,
+    ) -> Result<Self, PointsError> {
+        let position = triple(fields, POSITION).map_err(|axis| PointsError::Missing {
+            path: path.into(),
+            missing: format!("number '{axis}'"),
+            place: format!("among the fields of a point ({})", listed(fields)),
+            help: "export positions as the numbers x, y and z",
+        })?;
+        let mut color = Color::find(fields);
+        let mut normal = NORMAL.into_iter().find_map(|names| triple(fields, names).ok());
+        let taken = |place: &usize| {
+            position.contains(place)
+                || color.as_ref().is_some_and(|color| color.place.contains(*place))
+                || normal.is_some_and(|normal| normal.contains(place))
+        };
+
+        let mut set = PointSet::default();
+        let mut places = Vec::new();
+        for (place, name) in distinct_names(fields).into_iter().enumerate() {
+            if taken(&place) {
+                continue;
+            }
+            if !options.wanted.attribute(&name) {
+                set.left_out.push(name);
+                continue;
+            }
+            places.push(place);
+            set.attributes.push(Attribute { name, values: Values::of(fields[place].kind) });
+        }
+        if !options.wanted.colors() {
+            color = None;
+        }
+        if !options.wanted.normals() {
+            normal = None;
+        }
+        set.colors = color.is_some().then(Vec::new);
+        set.color_encoding = color.as_ref().map(|color| color.encoding);
+        set.normals = normal.is_some().then(Vec::new);
+
+        let filter = &options.filter;
+        let sieve = match filter.keeps_all() {
+            true => None,
+            false => {
+                let places = filter.names().map(|name| {
+                    find(fields, name).ok_or_else(|| PointsError::Missing {
+                        path: path.into(),
+                        missing: format!("attribute '{name}', which the filter asks for"),
+                        place: format!("among the fields of a point ({})", listed(fields)),
+                        help: "name one of them in [objects.filter]",
+                    })
+                });
+                Some(Sieve::new(filter, places.collect::<Result<_, _>>()?))
+            }
+        };
+        let filter = filter.to_string();
+        Ok(Self { path, position, color, normal, attributes: places, sieve, filter, set })
+    }
+
+    /// Asks for memory for this many points at once, so that too little of it is an error. The
+    /// number must be bounded by what the file has bytes for, as that of
+    /// [`Source::records`](crate::source::Source::records) is. Nothing is asked for where a filter
+    /// keeps an unknown part.
+    pub(crate) fn expect(&mut self, points: u64) -> Result<(), PointsError> {
+        if points > u64::from(u32::MAX) {
+            return Err(PointsError::TooMany { path: self.path.into(), found: points });
+        }
+        if self.sieve.is_some() {
+            return Ok(());
+        }
+        let set = &mut self.set;
+        let count = points as usize;
+        let mut ask = || -> Result<(), TryReserveError> {
+            set.positions.try_reserve_exact(count)?;
+            set.file_index.try_reserve_exact(count)?;
+            if let Some(colors) = &mut set.colors {
+                colors.try_reserve_exact(count)?;
+            }
+            if let Some(normals) = &mut set.normals {
+                normals.try_reserve_exact(count)?;
+            }
+            for attribute in &mut set.attributes {
+                attribute.values.try_reserve_exact(count)?;
+            }
+            Ok(())
+        };
+        ask().map_err(|_| PointsError::OutOfMemory { path: self.path.into(), points })
+    }
+
+    /// Takes the next point of the file.
+    pub(crate) fn push(&mut self, row: &[f64]) -> Result<(), PointsError> {
+        let index = self.next_index()?;
+        let position = self.position.map(|place| row[place]);
+        if let Some(color) = &mut self.color {
+            color.see(row);
+        }
+        let skipped = self.sieve.as_mut().is_some_and(Sieve::skips);
+        let set = &mut self.set;
+        if !position.iter().all(|coordinate| coordinate.is_finite()) {
+            set.non_finite += 1;
+            return Ok(());
+        }
+        if skipped || self.sieve.as_mut().is_some_and(|sieve| !sieve.keeps(position, row)) {
+            set.filtered_out += 1;
+            return Ok(());
+        }
+        set.positions.push(position);
+        set.file_index.push(index);
+        if let (Some(colors), Some(color)) = (&mut set.colors, &self.color) {
+            colors.push(color.linear(row));
+        }
+        if let (Some(normals), Some(normal)) = (&mut set.normals, self.normal) {
+            normals.push(normal.map(|place| row[place] as f32));
+        }
+        for (attribute, &place) in set.attributes.iter_mut().zip(&self.attributes) {
+            attribute.values.push(row[place]);
+        }
+        Ok(())
+    }
+
+    /// Passes over the next point of the file, which the file itself calls invalid.
+    pub(crate) fn push_invalid(&mut self) -> Result<(), PointsError> {
+        self.next_index()?;
+        if let Some(sieve) = &mut self.sieve {
+            sieve.skips();
+        }
+        self.set.invalid += 1;
+        Ok(())
+    }
+
+    /// Place in the file of the point that comes.
+    fn next_index(&mut self) -> Result<u32, PointsError> {
+        let found = self.set.in_file();
+        u32::try_from(found)
+            .ok()
+            .filter(|&index| index < u32::MAX)
+            .ok_or_else(|| PointsError::TooMany { path: self.path.into(), found: found + 1 })
+    }
+
+    /// The set, which must not be empty. `format` is the file format in words.
+    ///
+    /// Colours of 16 bits of which none is over 255 are taken for colours of 8; if all are 0, nobody
+    /// wrote colours into the fields that the format has for them.
+    pub(crate) fn finish(self, format: &str) -> Result<PointSet, PointsError> {
+        let mut set = self.set;
+        if set.positions.is_empty() {
+            let path = self.path.into();
+            return Err(match set.filtered_out {
+                0 => PointsError::NoPoints {
+                    path,
+                    in_file: set.in_file(),
+                    non_finite: set.non_finite,
+                    invalid: set.invalid,
+                },
+                usable => PointsError::FilteredOut { path, usable, filter: self.filter },
+            });
+        }
+        if let (Some(color), Some(colors)) = (&self.color, &mut set.colors)
+            && color.encoding == ColorEncoding::Srgb16
+        {
+            if color.greatest == 0.0 {
+                (set.colors, set.color_encoding) = (None, None);
+            } else if color.greatest <= 255.0 {
+                color.as_bytes(colors);
+                set.color_encoding = Some(ColorEncoding::Srgb8);
+            }
+        }
+        set.format = format.to_owned();
+        Ok(set)
+    }
+}
+
+impl Color {
+    /// The colour among the fields: three numbers of one type, or a packed one.
+    fn find(fields: &[Field]) -> Option<Self> {
+        let packed = |name| {
+            let place = find(fields, name)?;
+            matches!(fields[place].kind, Type::I32 | Type::U32).then_some(place)
+        };
+        let (place, kind) = COLOR
+            .into_iter()
+            .find_map(|names| {
+                let places = triple(fields, names).ok()?;
+                let [kind, others @ ..] = places.map(|place| fields[place].kind);
+                let alike = others.iter().all(|&other| other == kind);
+                alike.then_some((ColorPlace::Three(places), kind))
+            })
+            .or_else(|| {
+                let place = PACKED_COLOR.into_iter().find_map(packed)?;
+                Some((ColorPlace::Packed(place), Type::U8))
+            })?;
+        let (encoding, entries) = match kind {
+            Type::F32 | Type::F64 => (ColorEncoding::Linear, 0),
+            Type::I16 | Type::U16 => (ColorEncoding::Srgb16, 1 << 16),
+            // Integers of 32 bits hold bytes: exporters that write them do so for want of uchar.
+            Type::I8 | Type::U8 | Type::I32 | Type::U32 | Type::I64 | Type::U64 => {
+                (ColorEncoding::Srgb8, 1 << 8)
+            }
+        };
+        let table = (0..entries).map(|stored| encoding.decode(f64::from(stored))).collect();
+        Some(Self { place, encoding, table, greatest: 0.0 })
+    }
+
+    fn stored(&self, row: &[f64]) -> [f64; 3] {
+        match self.place {
+            ColorPlace::Three(places) => places.map(|place| row[place]),
+            ColorPlace::Packed(place) => {
+                // Of a negative number, the bits of its 32 count.
+                let bits = row[place] as i64 as u32;
+                [16, 8, 0].map(|shift| f64::from(bits >> shift & 0xff))
+            }
+        }
+    }
+
+    /// Notes what a point of the file holds, whether it is kept or not.
+    fn see(&mut self, row: &[f64]) {
+        if self.encoding == ColorEncoding::Srgb16 {
+            self.greatest = self.stored(row).into_iter().fold(self.greatest, f64::max);
+        }
+    }
+
+    fn linear(&self, row: &[f64]) -> [f32; 3] {
+        let stored = self.stored(row);
+        match self.table.last() {
+            // Negative numbers become 0 in the cast.
+            Some(&brightest) => {
+                stored.map(|stored| *self.table.get(stored as usize).unwrap_or(&brightest))
+            }
+            None => stored.map(|stored| stored as f32),
+        }
+    }
+
+    /// Corrects colours that were taken for numbers of 16 bits, but are of 8, as in many LAS files.
+    fn as_bytes(&self, colors: &mut [[f32; 3]]) {
+        let bytes = &self.table[..256];
+        let linear: Vec<f32> =
+            (0..256).map(|stored| ColorEncoding::Srgb8.decode(f64::from(stored))).collect();
+        for value in colors.iter_mut().flatten() {
+            // The table ascends strictly, and all values are from it.
+            *value = linear[bytes.partition_point(|entry| entry < value).min(255)];
+        }
+    }
+}
+
+impl ColorPlace {
+    fn contains(&self, place: usize) -> bool {
+        match self {
+            Self::Three(places) => places.contains(&place),
+            Self::Packed(packed) => *packed == place,
+        }
+    }
+}
+
+/// Place of the field of this name. A name in other letter case does where the exact one is
+/// missing.
+fn find(fields: &[Field], name: &str) -> Option<usize> {
+    let place = |fits: &dyn Fn(&str) -> bool| fields.iter().position(|field| fits(&field.name));
+    place(&|other| other == name).or_else(|| place(&|other| other.eq_ignore_ascii_case(name)))
+}
+
+/// Places of three fields; fails with the first name that is none.
+fn triple<'n>(fields: &[Field], names: [&'n str; 3]) -> Result<[usize; 3], &'n str> {
+    let place = |name: &'n str| find(fields, name).ok_or(name);
+    let [x, y, z] = names;
+    Ok([place(x)?, place(y)?, place(z)?])
+}
+
+/// The names of the fields; those that are there before get a number.
+fn distinct_names(fields: &[Field]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for field in fields {
+        let numbered = (2..).map(|number| format!("{}_{number}", field.name));
+        let mut all = std::iter::once(field.name.clone()).chain(numbered);
+        names.extend(all.find(|name| !names.contains(name)));
+    }
+    names
+}
+
+/// The names of the fields, for messages: not more than a line holds.
+fn listed(fields: &[Field]) -> String {
+    const MOST: usize = 20;
+    let names: Vec<_> = fields.iter().take(MOST).map(|field| format!("'{}'", field.name)).collect();
+    let more = if fields.len() > MOST { ", …" } else { "" };
+    match names.as_slice() {
+        [] => "none".to_owned(),
+        names => format!("{}{more}", names.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::filter::Filter;
+    use crate::options::Wanted;
+
+    fn fields(names: &[(&str, Type)]) -> Vec<Field> {
+        names.iter().map(|&(name, kind)| Field::new(name, kind)).collect()
+    }
+
+    fn xyz_and(others: &[(&str, Type)]) -> Vec<Field> {
+        let xyz = [("x", Type::F64), ("y", Type::F64), ("z", Type::F64)];
+        fields(&[&xyz, others].concat())
+    }
+
+    fn collect(
+        fields: &[Field],
+        rows: &[&[f64]],
+        options: &ReadOptions,
+    ) -> Result<PointSet, PointsError> {
+        let mut collector = Collector::new(fields, Path::new("a"), options)?;
+        for row in rows {
+            collector.push(row)?;
+        }
+        collector.finish("rows")
+    }
+
+    /// 236 is 236 of 255, unless another point of the file has more.
+    #[test]
+    fn bytes_in_fields_of_16_bits_are_taken_for_bytes() {
+        let fields = xyz_and(&[("red", Type::U16), ("green", Type::U16), ("blue", Type::U16)]);
+        let dark: &[f64] = &[0.0, 0.0, 0.0, 236.0, 0.0, 10.0];
+        let set = collect(&fields, &[dark], &ReadOptions::default()).unwrap();
+        assert_eq!(set.color_encoding, Some(ColorEncoding::Srgb8));
+        let decode = |stored| ColorEncoding::Srgb8.decode(stored);
+        assert_eq!(set.colors.unwrap(), [[decode(236.0), 0.0, decode(10.0)]]);
+
+        let bright: &[f64] = &[0.0, 0.0, 0.0, 256.0, 0.0, 10.0];
+        let first = Filter { every: 2, ..Filter::default() };
+        for filter in [Filter::default(), first] {
+            let options = ReadOptions { filter, ..ReadOptions::default() };
+            let set = collect(&fields, &[dark, bright], &options).unwrap();
+            assert_eq!(set.color_encoding, Some(ColorEncoding::Srgb16));
+            assert_eq!(set.colors.unwrap()[0][0], ColorEncoding::Srgb16.decode(236.0));
+        }
+        let black = collect(&fields, &[&[0.0; 6]], &ReadOptions::default()).unwrap();
+        assert_eq!((black.colors, black.color_encoding), (None, None));
+    }
+
+    #[test]
+    fn packed_colors_come_apart() {
+        for (kind, stored) in [(Type::U32, f64::from(0xff80_40ffu32)), (Type::I32, -8_371_969.0)] {
+            let set = collect(
+                &xyz_and(&[("rgba", kind)]),
+                &[&[0.0, 0.0, 0.0, stored]],
+                &ReadOptions::default(),
+            );
+            let decode = |stored| ColorEncoding::Srgb8.decode(stored);
+            let expected = [decode(128.0), decode(64.0), decode(255.0)];
+            assert_eq!(set.unwrap().colors.unwrap(), [expected], "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn names_that_come_twice_are_numbered() {
+        let fields = xyz_and(&[("a", Type::F32), ("a", Type::U8), ("a_2", Type::U8)]);
+        let set = collect(&fields, &[&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]], &ReadOptions::default());
+        let set = set.unwrap();
+        assert_eq!(set.attribute("a"), Some(&Values::F32(vec![3.0])));
+        assert_eq!(set.attribute("a_2"), Some(&Values::U8(vec![4])));
+        assert_eq!(set.attribute("a_2_2"), Some(&Values::U8(vec![5])));
+    }
+
+    #[test]
+    fn what_is_not_wanted_is_named_but_not_held() {
+        let fields = xyz_and(&[
+            ("nx", Type::F32),
+            ("ny", Type::F32),
+            ("nz", Type::F32),
+            ("red", Type::U8),
+            ("green", Type::U8),
+            ("blue", Type::U8),
+            ("a", Type::F64),
+            ("b", Type::U8),
+        ]);
+        let wanted =
+            Wanted::Some { colors: false, normals: true, attributes: vec!["b".to_owned()] };
+        let options = ReadOptions { wanted, ..ReadOptions::default() };
+        let set = collect(&fields, &[&[0.0; 11]], &options).unwrap();
+        assert_eq!((set.colors, set.color_encoding), (None, None));
+        assert_eq!(set.normals, Some(vec![[0.0; 3]]));
+        assert_eq!(set.left_out, ["a"]);
+        assert_eq!(set.attributes.len(), 1);
+    }
+
+    #[test]
+    fn filters_are_applied_in_their_order() {
+        let fields = xyz_and(&[("Classification", Type::U8), ("intensity", Type::U16)]);
+        // x from 0 to 11, class 0 to 2 in turn, intensity ten times x.
+        let rows: Vec<[f64; 5]> = (0..12)
+            .map(|i| [f64::from(i), 0.0, -0.0, f64::from(i % 3), f64::from(10 * i)])
+            .collect();
+        let rows: Vec<&[f64]> = rows.iter().map(|row| &row[..]).collect();
+        let kept = |filter: Filter| {
+            let options = ReadOptions { filter, ..ReadOptions::default() };
+            let set = collect(&fields, &rows, &options).unwrap();
+            assert_eq!(set.len() as u64 + set.filtered_out, 12);
+            set.file_index
+        };
+        let all = Filter::default;
+        assert_eq!(kept(Filter { every: 5, ..all() }), [0, 5, 10]);
+        let bounds = Some([[2.0, -1.0, 0.0], [4.0, 1.0, 0.0]]);
+        assert_eq!(kept(Filter { bounds, ..all() }), [2, 3, 4]);
+        assert_eq!(kept(Filter { bounds, every: 2, ..all() }), [2, 4]);
+        let ranges = vec![("intensity".to_owned(), [30.0, 70.0]), ("X".to_owned(), [0.0, 6.5])];
+        assert_eq!(kept(Filter { ranges: ranges.clone(), ..all() }), [3, 4, 5, 6]);
+        let classes = Some(vec![2, 6]);
+        assert_eq!(kept(Filter { classes: classes.clone(), ..all() }), [2, 5, 8, 11]);
+        assert_eq!(kept(Filter { ranges, classes: classes.clone(), ..all() }), [5]);
+        assert_eq!(kept(Filter { voxel: Some(4.0), ..all() }), [0, 4, 8]);
+        assert_eq!(kept(Filter { voxel: Some(4.0), classes, ..all() }), [2, 5, 8]);
+    }
+
+    #[test]
+    fn filters_that_keep_nothing_or_ask_for_what_is_not_there_are_errors() {
+        let read = |filter| {
+            let options = ReadOptions { filter, ..ReadOptions::default() };
+            collect(&xyz_and(&[]), &[&[1.0, 2.0, 3.0]], &options).unwrap_err().to_string()
+        };
+        let ranges = vec![("z".to_owned(), [0.0, 1.5])];
+        let none = read(Filter { ranges, every: 3, ..Filter::default() });
+        assert_eq!(
+            none,
+            "a: the filter (every = 3, range = { z = [0, 1.5] }) keeps none of 1 points; widen it"
+        );
+        let missing = read(Filter { classes: Some(vec![2]), ..Filter::default() });
+        assert_eq!(
+            missing,
+            "a: found no attribute 'classification', which the filter asks for, expected it among \
+             the fields of a point ('x', 'y', 'z'); name one of them in [objects.filter]"
+        );
+    }
+}

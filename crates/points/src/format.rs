@@ -1,0 +1,76 @@
+//! The list of formats.
+
+use crate::error::PointsError;
+use crate::options::ReadOptions;
+use crate::set::PointSet;
+use crate::source::Source;
+use crate::{e57, las, npy, obj, off, pcd, ply, text, vtk};
+use std::path::Path;
+
+/// A format that points are read from.
+pub(crate) struct Format {
+    /// As messages call it.
+    pub(crate) name: &'static str,
+    /// Of its files, in lower case.
+    pub(crate) extensions: &'static [&'static str],
+    /// Whether a file may be one, by its first few kilobytes.
+    pub(crate) sniff: fn(&[u8]) -> bool,
+    /// Reads the points. The path is for messages alone.
+    pub(crate) read: fn(Source<'_>, &Path, &ReadOptions) -> Result<PointSet, PointsError>,
+}
+
+/// All formats; those whose beginning is a clear sign stand before those that are told by the look
+/// of their lines.
+pub(crate) static FORMATS: &[Format] = &[
+    Format { name: "PLY", extensions: &["ply"], sniff: ply::sniff, read: ply::read },
+    Format { name: "LAS", extensions: &["las", "laz"], sniff: las::sniff, read: las::read },
+    Format { name: "E57", extensions: &["e57"], sniff: e57::sniff, read: e57::read },
+    Format { name: "PCD", extensions: &["pcd"], sniff: pcd::sniff, read: pcd::read },
+    Format { name: "NPY", extensions: &["npy"], sniff: npy::sniff, read: npy::read },
+    Format {
+        name: "NPZ",
+        extensions: &["npz"],
+        sniff: npy::sniff_archive,
+        read: npy::read_archive,
+    },
+    Format { name: "VTK", extensions: &["vtk"], sniff: vtk::sniff_legacy, read: vtk::read_legacy },
+    Format {
+        name: "VTK XML",
+        extensions: &["vtu", "vtp", "vts", "vtr", "vti", "pvtu", "pvtp"],
+        sniff: vtk::sniff_xml,
+        read: vtk::read_xml,
+    },
+    Format {
+        name: "OFF",
+        extensions: &["off", "coff", "noff"],
+        sniff: off::sniff,
+        read: off::read,
+    },
+    Format { name: "OBJ", extensions: &["obj"], sniff: obj::sniff, read: obj::read },
+    Format {
+        name: "text",
+        extensions: &["xyz", "pts", "csv", "tsv", "txt", "asc", "dat"],
+        sniff: text::sniff,
+        read: text::read,
+    },
+];
+
+/// What a file with this beginning is read as: the first format that its contents look like, of
+/// several the one with its extension; where they look like none, that with its extension, whose
+/// reader says what is wrong.
+pub(crate) fn of(start: &[u8], path: &Path) -> Option<&'static Format> {
+    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    let called_so = |format: &&Format| {
+        extension.as_deref().is_some_and(|extension| format.extensions.contains(&extension))
+    };
+    let looks_so = || FORMATS.iter().filter(|format| (format.sniff)(start));
+    looks_so()
+        .find(called_so)
+        .or_else(|| looks_so().next())
+        .or_else(|| FORMATS.iter().find(called_so))
+}
+
+/// Names of all formats, for messages.
+pub(crate) fn names() -> String {
+    FORMATS.iter().map(|format| format.name).collect::<Vec<_>>().join(", ")
+}

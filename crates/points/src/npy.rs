@@ -1,0 +1,215 @@
+//! NumPy arrays: `.npy` files, and `.npz` archives of them.
+//!
+//! Points are rows: of an array of shape (n, k) with k from 3 on, or records with named fields. An
+//! array of shape (3, n) with n beyond [`MOST_ROWS_OF_THREE`] is taken for columns. Headers are
+//! Python literals and are read as such, never run; pickled objects are refused.
+
+mod archive;
+mod header;
+mod literal;
+
+use crate::collect::Collector;
+use crate::columns::{Array, Part, Place, Records, Shared, SideBySide};
+use crate::error::PointsError;
+use crate::field::{Field, Type};
+use crate::meaning;
+use crate::npy::header::{Header, MAGIC};
+use crate::options::ReadOptions;
+use crate::set::PointSet;
+use crate::source::Source;
+use std::cell::RefCell;
+use std::io::{self, Read};
+use std::path::Path;
+
+pub(crate) use archive::{read as read_archive, sniff as sniff_archive};
+
+/// An array of more columns is taken for something else.
+const MAX_COLUMNS: usize = 1000;
+/// Up to so many columns, three rows are three points.
+const MOST_ROWS_OF_THREE: u64 = 16;
+
+const HELP: &str = "save it again with numpy.save";
+
+/// Whether a file that begins so is a NumPy array.
+pub(crate) fn sniff(start: &[u8]) -> bool {
+    start.starts_with(MAGIC)
+}
+
+/// Why an array is not read.
+enum Trouble {
+    Io(io::Error),
+    /// What was found in the header, and what was expected.
+    Header {
+        found: String,
+        expected: String,
+    },
+}
+
+impl From<io::Error> for Trouble {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl Trouble {
+    fn header(found: impl Into<String>, expected: impl Into<String>) -> Self {
+        Self::Header { found: found.into(), expected: expected.into() }
+    }
+
+    /// `of` says whose header it is: nothing, or ` of 'a.npy'`.
+    fn at(self, path: &Path, of: &str) -> PointsError {
+        match self {
+            Self::Io(source) => PointsError::Io { path: path.into(), source },
+            Self::Header { found, expected } => {
+                PointsError::wrong(path, &format!("the NumPy header{of}"), found, &expected, HELP)
+            }
+        }
+    }
+}
+
+/// Reads the rows of an array.
+pub(crate) fn read(
+    source: Source<'_>,
+    path: &Path,
+    options: &ReadOptions,
+) -> Result<PointSet, PointsError> {
+    let io_error = |source| PointsError::Io { path: path.into(), source };
+    let file: Shared<'_> = RefCell::new(source.seekable().map_err(io_error)?);
+    let open = || -> io::Result<Box<dyn Read + '_>> {
+        Ok(Box::new(Part::new(&file, 0, u64::MAX).buffered()))
+    };
+    let header = Header::read(&mut open().map_err(io_error)?).map_err(|e| e.at(path, ""))?;
+    let rows = Rows::of(&header).map_err(|e| e.at(path, ""))?;
+    if !header.record.has_names && rows.names.len() < 3 {
+        let found = format!("the shape {}", header.shape_in_words());
+        return Err(Trouble::header(found, "(n, 3), or more columns").at(path, ""));
+    }
+    let left = file.borrow().length().saturating_sub(header.length);
+    let point_size = rows.point_size(&header);
+    let needed = u128::from(rows.points) * u128::from(point_size);
+    if needed > left.into() {
+        return Err(PointsError::CutOff {
+            path: path.into(),
+            what: "points".to_owned(),
+            declared: rows.points,
+            found: left / point_size.max(1),
+            bytes_declared: Some(needed),
+            bytes_found: Some(left),
+        });
+    }
+    let arrays = rows.arrays(&header, "data", &open).map_err(io_error)?;
+    let table = SideBySide::new(arrays, rows.points, path)?;
+    let kinds = rows.kinds();
+    let sample = table.sample(kinds.iter().map(|kind| kind.is_float()).collect());
+    let fields = match header.record.has_names {
+        true => meaning::by_names(&rows.names, Some(&kinds), &sample),
+        false => meaning::by_place(&sample, Some(&kinds)),
+    };
+    let mut collector = Collector::new(&fields, path, options)?;
+    collector.expect(rows.points)?;
+    table.collect(&mut collector)?;
+    let shape = header.shape_in_words();
+    let taken = if header.record.has_names {
+        "named fields".to_owned()
+    } else {
+        let columns = if rows.transposed { "rows" } else { "columns" };
+        format!("{columns} taken for {}", meaning::listed(&fields))
+    };
+    collector.finish(&format!("NPY, shape {shape}, {taken}"))
+}
+
+/// An array as points.
+struct Rows {
+    points: u64,
+    /// Names of the numbers of a point; without meaning where the array has no named fields.
+    names: Vec<String>,
+    /// Where they are in a row, or, if they are `apart`, each in its own column.
+    places: Vec<Place>,
+    /// Whether all points' first numbers come first, then all second ones.
+    apart: bool,
+    /// Whether that is for the shape being (3, n).
+    transposed: bool,
+}
+
+impl Rows {
+    /// Fails if the shape is none of points.
+    fn of(header: &Header) -> Result<Self, Trouble> {
+        let record = &header.record;
+        let too_many = || Trouble::header(format!("the shape {}", header.shape_in_words()), "less");
+        let product = |lengths: &[u64]| -> Result<u64, Trouble> {
+            let count = lengths.iter().try_fold(1u64, |all, &length| all.checked_mul(length));
+            count.ok_or_else(too_many)
+        };
+        if record.numbers.is_empty() {
+            return Err(Trouble::header("elements that are no numbers", "numbers"));
+        }
+        if record.has_names {
+            let (names, places) = record.numbers.iter().cloned().unzip();
+            let points = product(&header.shape)?;
+            return Ok(Self { points, names, places, apart: false, transposed: false });
+        }
+        let transposed = matches!(*header.shape, [3, n] if n > MOST_ROWS_OF_THREE);
+        let (points, width) = match *header.shape {
+            [_, n] if transposed => (n, 3),
+            [ref before @ .., width] if !before.is_empty() => (product(before)?, width),
+            [n] => (n, 1),
+            _ => (1, 1),
+        };
+        let width = usize::try_from(width).ok().filter(|&width| width <= MAX_COLUMNS);
+        let width = width.ok_or_else(|| {
+            let found = format!("the shape {}", header.shape_in_words());
+            Trouble::header(found, format!("at most {MAX_COLUMNS} columns"))
+        })?;
+        let place = record.numbers[0].1;
+        let places = (0..width).map(|i| Place { offset: i * record.size, ..place }).collect();
+        let names = vec![String::new(); width];
+        // Two wrongs make a right: of (3, n) in Fortran's order, points come one after the other.
+        Ok(Self { points, names, places, apart: transposed != header.fortran, transposed })
+    }
+
+    fn kinds(&self) -> Vec<Type> {
+        self.places.iter().map(|place| place.coding.kind()).collect()
+    }
+
+    /// Bytes of a point.
+    fn point_size(&self, header: &Header) -> u64 {
+        let elements = if header.record.has_names { 1 } else { self.places.len() };
+        (elements * header.record.size) as u64
+    }
+
+    /// What reads the numbers of all points. `open` gives the array anew, from its header on.
+    fn arrays<'f>(
+        &self,
+        header: &Header,
+        name: &str,
+        open: &dyn Fn() -> io::Result<Box<dyn Read + 'f>>,
+    ) -> io::Result<Vec<Array<'f>>> {
+        let after = |skip: u64| -> io::Result<Box<dyn Read + 'f>> {
+            let mut reader = open()?;
+            io::copy(&mut reader.by_ref().take(skip), &mut io::sink())?;
+            Ok(reader)
+        };
+        let name = name.to_owned();
+        if !self.apart {
+            let size = self.point_size(header) as usize;
+            let records = Records::new(after(header.length)?, size, self.places.clone());
+            return Ok(vec![Array { name, width: self.places.len(), numbers: Box::new(records) }]);
+        }
+        let column_size = self.points.saturating_mul(header.record.size as u64);
+        let columns = (0..).zip(&self.places).map(|(column, place)| {
+            let skip = header.length.saturating_add(column_size.saturating_mul(column));
+            let records = Records::of(after(skip)?, place.coding, place.big, 1);
+            Ok(Array { name: name.clone(), width: 1, numbers: Box::new(records) })
+        });
+        columns.collect()
+    }
+}
+
+/// The fields of arrays that are read by their names.
+fn named_fields(names: &[String], kinds: &[Type], table: &SideBySide<'_>) -> Vec<Field> {
+    let sample = table.sample(kinds.iter().map(|kind| kind.is_float()).collect());
+    meaning::by_names(names, Some(kinds), &sample)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,65 @@
+//! What of a point file is read.
+
+use crate::filter::Filter;
+
+/// What of a point file is kept. The default is everything.
+///
+/// What is left out is never held: a file of which every tenth point is kept takes a tenth of the
+/// memory.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ReadOptions {
+    /// Which numbers of each point are kept beside its position.
+    pub wanted: Wanted,
+    /// Which points are kept.
+    pub filter: Filter,
+}
+
+/// Which numbers of each point are kept beside its position.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Wanted {
+    /// All.
+    #[default]
+    All,
+    /// These.
+    Some {
+        /// Whether colours are.
+        colors: bool,
+        /// Whether normals are.
+        normals: bool,
+        /// The attributes of these names, where the file has them.
+        attributes: Vec<String>,
+    },
+}
+
+impl Wanted {
+    /// What either wants.
+    #[must_use]
+    pub fn or(&self, other: &Self) -> Self {
+        let (Self::Some { attributes, .. }, Self::Some { attributes: others, .. }) = (self, other)
+        else {
+            return Self::All;
+        };
+        let mut attributes = attributes.clone();
+        attributes.extend(others.iter().filter(|name| !self.attribute(name)).cloned());
+        Self::Some {
+            colors: self.colors() || other.colors(),
+            normals: self.normals() || other.normals(),
+            attributes,
+        }
+    }
+
+    pub(crate) fn colors(&self) -> bool {
+        matches!(self, Self::All | Self::Some { colors: true, .. })
+    }
+
+    pub(crate) fn normals(&self) -> bool {
+        matches!(self, Self::All | Self::Some { normals: true, .. })
+    }
+
+    pub(crate) fn attribute(&self, name: &str) -> bool {
+        match self {
+            Self::All => true,
+            Self::Some { attributes, .. } => attributes.iter().any(|wanted| wanted == name),
+        }
+    }
+}
