@@ -65,7 +65,7 @@ pub struct RenderArgs {
     /// Write R, G, B, A and N of EXR files in 16 bits instead of 32; all other channels stay
     #[arg(long)]
     pub half: bool,
-    /// Which axis of a point file points upwards [default: y]
+    /// Which axis of a point file points upwards [default: z of LAS, LAZ and E57 files, else y]
     #[arg(long, value_name = "AXIS")]
     pub up: Option<UpAxis>,
     #[command(flatten)]

@@ -94,10 +94,15 @@ impl Input {
     /// Loads and checks a scene file, or makes the scene that a point file means. Reads no points.
     pub fn load(path: &Path, values: &SceneValues, up: Option<UpAxis>) -> Result<Self, Failure> {
         let set = values.as_set();
+        let own_up = || match !is_scene_file(path) && points::z_is_up(path) {
+            true => Up::Z,
+            false => Up::Y,
+        };
+        let turned = up.map_or_else(own_up, Up::from);
         let loaded = if is_scene_file(path) {
             Scene::load(path, &set)
         } else {
-            Scene::for_point_file(path, up.map_or(Up::Y, Up::from), &set)
+            Scene::for_point_file(path, turned, &set)
         };
         let mut scene = loaded.map_err(|error| values.name_options(error.into()))?;
         if let (true, Some(_), Some(_)) = (is_scene_file(path), up, scene.camera) {
@@ -112,7 +117,7 @@ impl Input {
             object.points_as_written =
                 path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         }
-        Ok(Self { path: path.into(), scene, up: up.map_or(Up::Y, Up::from) })
+        Ok(Self { path: path.into(), scene, up: turned })
     }
 
     /// Every file that the picture is made from.

@@ -48,6 +48,15 @@ pub(crate) static FORMATS: &[Format] = &[
     },
 ];
 
+/// Formats of surveys, where z points upwards.
+const Z_IS_UP: [&str; 2] = ["LAS", "E57"];
+
+impl Format {
+    pub(crate) fn z_is_up(&self) -> bool {
+        Z_IS_UP.contains(&self.name)
+    }
+}
+
 /// What a file with this beginning is read as: the first format that its contents look like, of
 /// several the one with its extension; where they look like none, that with its extension, whose
 /// reader says what is wrong.

@@ -6,7 +6,7 @@ use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
 use std::fs::File;
-use std::io::Cursor;
+use std::io::{Cursor, Read};
 use std::path::Path;
 
 /// How much of a file tells its format.
@@ -48,7 +48,16 @@ pub fn read_with(
     read_source(source, path, options)
 }
 
-/// The same of bytes in memory. `name` stands in messages, and its extension tells the format where
+/// Whether a file is of a format of surveys (LAS, LAZ, E57), where z points upwards. One that cannot
+/// be read is not.
+pub fn z_is_up(path: &Path) -> bool {
+    let mut start = Vec::new();
+    let opened = File::open(path).ok().filter(|file| file.metadata().is_ok_and(|m| m.is_file()));
+    let read = opened.map(|file| file.take(START as u64).read_to_end(&mut start));
+    matches!(read, Some(Ok(1..))) && format::of(&start, path).is_some_and(|format| format.z_is_up())
+}
+
+/// As [`read_with`], of bytes in memory. `name` stands in messages, and its extension tells the format where
 /// the contents leave it open.
 ///
 /// # Errors
