@@ -94,9 +94,11 @@ impl Input {
     /// Loads and checks a scene file, or makes the scene that a point file means. Reads no points.
     pub fn load(path: &Path, values: &SceneValues, up: Option<UpAxis>) -> Result<Self, Failure> {
         let set = values.as_set();
-        let own_up = || match !is_scene_file(path) && points::z_is_up(path) {
-            true => Up::Z,
-            false => Up::Y,
+        let own_up = || match points::usual_up(path) {
+            _ if is_scene_file(path) => Up::Y,
+            points::Upwards::Y => Up::Y,
+            points::Upwards::Z => Up::Z,
+            points::Upwards::MinusY => Up::MinusY,
         };
         let turned = up.map_or_else(own_up, Up::from);
         let loaded = if is_scene_file(path) {

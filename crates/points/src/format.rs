@@ -48,12 +48,25 @@ pub(crate) static FORMATS: &[Format] = &[
     },
 ];
 
-/// Formats of surveys, where z points upwards.
-const Z_IS_UP: [&str; 2] = ["LAS", "E57"];
+/// Which way is up in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Upwards {
+    /// +y, as in most models.
+    Y,
+    /// +z, as in surveys.
+    Z,
+    /// -y, as in what a depth camera sees.
+    MinusY,
+}
 
 impl Format {
-    pub(crate) fn z_is_up(&self) -> bool {
-        Z_IS_UP.contains(&self.name)
+    /// Which way is up in files of this format that begin so, as a rule.
+    pub(crate) fn usual_up(&self, start: &[u8]) -> Upwards {
+        match self.name {
+            "LAS" | "E57" => Upwards::Z,
+            "PCD" if pcd::is_organised(start) => Upwards::MinusY,
+            _ => Upwards::Y,
+        }
     }
 }
 

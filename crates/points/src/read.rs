@@ -1,7 +1,7 @@
 //! Opens point files, and finds out what they are.
 
 use crate::error::{PointsError, Quoted};
-use crate::format;
+use crate::format::{self, Upwards};
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
@@ -48,13 +48,16 @@ pub fn read_with(
     read_source(source, path, options)
 }
 
-/// Whether a file is of a format of surveys (LAS, LAZ, E57), where z points upwards. One that cannot
-/// be read is not.
-pub fn z_is_up(path: &Path) -> bool {
+/// Which way is up in a file, as a rule for its format: z in surveys (LAS, LAZ, E57), -y in organised
+/// PCD files, which depth cameras write, else y. So it is too where the file cannot be read.
+pub fn usual_up(path: &Path) -> Upwards {
     let mut start = Vec::new();
     let opened = File::open(path).ok().filter(|file| file.metadata().is_ok_and(|m| m.is_file()));
     let read = opened.map(|file| file.take(START as u64).read_to_end(&mut start));
-    matches!(read, Some(Ok(1..))) && format::of(&start, path).is_some_and(|format| format.z_is_up())
+    match (read, format::of(&start, path)) {
+        (Some(Ok(1..)), Some(format)) => format.usual_up(&start),
+        _ => Upwards::Y,
+    }
 }
 
 /// As [`read_with`], of bytes in memory. `name` stands in messages, and its extension tells the format where
