@@ -4,7 +4,7 @@ use crate::error::PointsError;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
-use crate::{e57, las, npy, obj, off, pcd, ply, text};
+use crate::{e57, las, npy, obj, off, pcd, ply, text, vtk};
 use std::path::Path;
 
 /// A format that points are read from.
@@ -32,6 +32,13 @@ pub(crate) static FORMATS: &[Format] = &[
         extensions: &["npz"],
         sniff: npy::sniff_archive,
         read: npy::read_archive,
+    },
+    Format { name: "VTK", extensions: &["vtk"], sniff: vtk::sniff_legacy, read: vtk::read_legacy },
+    Format {
+        name: "VTK XML",
+        extensions: &["vtu", "vtp", "vts", "vtr", "vti", "pvtu", "pvtp"],
+        sniff: vtk::sniff_xml,
+        read: vtk::read_xml,
     },
     Format {
         name: "OFF",

@@ -35,6 +35,7 @@ mod source;
 mod spacing;
 mod summary;
 mod text;
+mod vtk;
 mod watch;
 
 pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange, bounds_of};

@@ -1,7 +1,7 @@
 //! `.npz` archives: the array of positions, and all others of its length.
 
 use crate::collect::Collector;
-use crate::columns::{Part, Shared, SideBySide, fill};
+use crate::columns::{Part, Shared, SideBySide, check_expansion, fill};
 use crate::error::PointsError;
 use crate::field::Type;
 use crate::meaning;
@@ -19,10 +19,6 @@ use zip::{CompressionMethod, ZipArchive};
 
 /// Most arrays of an archive.
 const MAX_ARRAYS: usize = 1000;
-/// Points that take more memory than this take at most [`MAX_EXPANSION`] times the file's bytes:
-/// beyond, the file is taken for one that was made to fill memory.
-const FREE_BYTES: u64 = 1 << 28;
-const MAX_EXPANSION: u64 = 100;
 
 /// Whether a file that begins so is an archive.
 pub(crate) fn sniff(start: &[u8]) -> bool {
@@ -130,15 +126,7 @@ pub(crate) fn read(
         taken.push((entry, chosen));
     }
     let length = file.borrow().length();
-    if bytes > FREE_BYTES && bytes / MAX_EXPANSION > length {
-        return Err(PointsError::wrong(
-            path,
-            "the size of the unpacked arrays",
-            format!("{bytes} bytes"),
-            &format!("at most {MAX_EXPANSION} times the file's {length}"),
-            "save them with numpy.savez, which does not compress",
-        ));
-    }
+    check_expansion(path, bytes, length)?;
 
     let mut names = Vec::new();
     let mut kinds: Vec<Type> = Vec::new();
@@ -244,7 +232,7 @@ fn members(file: &Shared<'_>, path: &Path) -> Result<Vec<Member>, PointsError> {
         let entry = archive.by_index_raw(index).map_err(damaged)?;
         let name = entry.name().map_err(damaged)?;
         let Some(name) = name.strip_suffix(".npy") else { continue };
-        let place = format!("the packing of '{name}'");
+        let place = format!("the packing of '{}'", meaning::printable(name));
         if entry.encrypted() {
             return Err(wrong(&place, "encryption".to_owned(), "none"));
         }
@@ -255,7 +243,7 @@ fn members(file: &Shared<'_>, path: &Path) -> Result<Vec<Member>, PointsError> {
         };
         let Some(start) = entry.data_start() else { continue };
         members.push(Member {
-            name: name.to_owned(),
+            name: meaning::printable(name),
             start,
             end: start.saturating_add(entry.compressed_size()),
             size: entry.size(),
