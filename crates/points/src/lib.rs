@@ -42,7 +42,7 @@ pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange, bounds_of}
 pub use error::PointsError;
 pub use filter::Filter;
 pub use format::Upwards;
-pub use grid::{BALL_MARGIN, plan_grid, skips_cells};
+pub use grid::{BALL_MARGIN, Grids, plan_grids};
 pub use neighbors::NeighborSearch;
 pub use options::{ReadOptions, Wanted};
 pub use read::{read, read_bytes, read_with, usual_up};
