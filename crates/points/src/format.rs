@@ -55,6 +55,28 @@ pub(crate) static FORMATS: &[Format] = &[
     },
 ];
 
+/// Which way is up in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Upwards {
+    /// +y, as in most models.
+    Y,
+    /// +z, as in surveys.
+    Z,
+    /// -y, as in what a depth camera sees.
+    MinusY,
+}
+
+impl Format {
+    /// Which way is up in files of this format that begin so, as a rule.
+    pub(crate) fn usual_up(&self, start: &[u8]) -> Upwards {
+        match self.name {
+            "LAS" | "E57" => Upwards::Z,
+            "PCD" if pcd::is_organised(start) => Upwards::MinusY,
+            _ => Upwards::Y,
+        }
+    }
+}
+
 /// What a file with this beginning is read as: the first format that its contents look like, of
 /// several the one with its extension; where they look like none, that with its extension, whose
 /// reader says what is wrong.
