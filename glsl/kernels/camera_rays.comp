@@ -16,12 +16,11 @@
 #define STATE_WRITES
 #include "layout.glsl"
 #include "sampler.glsl"
-#include "grid.glsl"
+#include "levels.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = TILE_GROUP) in;
-layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = CAMERA_PATH) readonly buffer Start { Path start; };
 layout(std430, binding = WAVE_PATHS) writeonly buffer Paths { Path paths[]; };
 layout(std430, binding = CAMERA_FILTER) readonly buffer Filter { float filter_steps[]; };
@@ -56,6 +55,6 @@ void main() {
     vec3 direction = camera_direction(slope);
     bool from_eye = start.x == 0.0 && start.y == 0.0;
     vec3 origin = from_eye ? params.eye : (params.eye + start.x * params.right) + start.y * params.up;
-    uint cell = enter_grid(grid, origin, direction);
+    uint cell = enter_scene(origin, direction);
     store_ray(ray, new_ray(origin, direction, outside ? NONE : cell, NONE));
 }

@@ -22,12 +22,11 @@
 #include "layout.glsl"
 #include "disc_walk.glsl"
 #include "environment.glsl"
-#include "grid.glsl"
+#include "levels.glsl"
 #include "index.glsl"
 #include "objects.glsl"
 
 layout(local_size_x = TILE_GROUP) in;
-layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
 layout(std430, binding = SHADE_FILM) writeonly buffer Film { FilmPixel film[]; };
 layout(std430, binding = WAVE_LIT_HITS) writeonly buffer LitHits { LitHit lit_hits[]; };
@@ -43,7 +42,7 @@ void main() {
     uint at = tile_ray(params.tile_size);
     bool outside = any(greaterThanEqual(pixel, params.tile_size));
     vec3 d = camera_direction(place_in_view(params.tile_origin + pixel, vec2(0.0)));
-    Ray ray = new_ray(params.eye, d, outside ? NONE : enter_grid(grid, params.eye, d), NONE);
+    Ray ray = new_ray(params.eye, d, outside ? NONE : enter_scene(params.eye, d), NONE);
     uvec2 tile = pixel / uint(DISC_TILE);
     walk_discs(ray, disc_range_of(tile.y * screen_tiles(params.tile_size).x + tile.x), params.ranks, params.work);
     if (ray.cell != NONE) atomicAdd(live, 1u);

@@ -29,5 +29,5 @@ void main() {
         low = earlier ? middle + 1u : low;
         high = earlier ? high : middle;
     }
-    offsets[cell] = low;
+    offsets[cell] = params.first_pair + low;
 }

@@ -24,7 +24,7 @@
 #define LISTS
 #include "layout.glsl"
 #include "math.glsl"
-#include "grid.glsl"
+#include "levels.glsl"
 #include "scene.glsl"
 #include "polynomial.glsl"
 #include "state.glsl"
@@ -32,7 +32,6 @@
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
 layout(std430, binding = WAVE_MARKS) buffer Marks { uint marks[]; };
 layout(std430, binding = LIVE_RAYS) readonly buffer LiveRays { uint live_rays[]; };
@@ -51,7 +50,9 @@ void main() {
     uint work_left = params.work;
     bool alive = ray.cell != NONE;
     uint cell = ray.cell;
-    uvec3 at = cell_of_id(grid, alive ? cell : 0u); // once: lavapipe divides integers lane by lane
+    uint level = alive ? level_of_cell(cell) : 0u;
+    GridLevel here = levels[level];
+    uvec3 at = cell_of_id(here.grid, alive ? cell - here.first_cell : 0u); // once: lavapipe divides integers lane by lane
     uvec2 range = alive ? range_of(cell) : uvec2(0u);
     uint next = range.x + ray.cursor;
     uint hit_object = NONE, hit_index = NONE;
@@ -76,8 +77,9 @@ void main() {
         uint end = min(range.y, first + BATCH);
         uint candidates = 0u;
         bool later = scene_has(SCENE_REFINES) && ray.after > 0.0;
-        bool everything = ray.cells == 0u || later;
-        vec2 within = way_through(grid, at, o, d);
+        bool enters = scene_has(SCENE_LEVELS) ? cell == ray.entry : ray.cells == 0u;
+        bool everything = enters || later;
+        vec2 within = way_through(here.grid, at, o, d);
         within.x = everything ? -NO_HIT : within.x;
         within.y = later ? NO_HIT : within.y;
         for (uint at_four = first; at_four < end; at_four += 4u) {
@@ -126,11 +128,21 @@ void main() {
         bool seeking = alive && next == range.y;
         while (seeking && cells_left > 0u && work_left > 0u) {
             uint around = scene_has(SCENE_SKIPS) ? empty_around(range) : 0u;
-            vec3 exits = crossings(grid, at, around, o, d);
+            vec3 exits = crossings(here.grid, at, around, o, d);
             bool ends = ray.hit_t <= nearest_crossing(exits);
-            at = next_cell(grid, at, around, scene_has(SCENE_SKIPS), exits, o, d);
-            alive = !ends && in_grid(grid, at);
-            cell = alive ? cell_id(grid, at) : NONE;
+            at = next_cell(here.grid, at, around, scene_has(SCENE_SKIPS), exits, o, d);
+            alive = !ends && in_grid(here.grid, at);
+            cell = alive ? here.first_cell + cell_id(here.grid, at) : NONE;
+            if (scene_has(SCENE_LEVELS)) {
+                if (!alive) { // on to the next grid
+                    cell = enter_from(level + 1u, o, d, vec2(ray.after, ray.hit_t));
+                    alive = cell != NONE;
+                    level = alive ? level_of_cell(cell) : level;
+                    here = levels[level];
+                    at = cell_of_id(here.grid, alive ? cell - here.first_cell : 0u);
+                    ray.entry = cell;
+                }
+            }
             range = alive ? range_of(cell) : uvec2(0u);
             next = range.x;
             seeking = alive && range.x == range.y;

@@ -21,5 +21,5 @@ void main() {
     uint i = list_index();
     if (i >= params.pair_count) return;
     uint slot = slots[i];
-    points[i] = ListedPoint(uintBitsToFloat(words_of(polynomials, 4u * slot).xyz), slot);
+    points[params.first_pair + i] = ListedPoint(uintBitsToFloat(words_of(polynomials, 4u * slot).xyz), slot);
 }

@@ -15,14 +15,13 @@
 #define STATE_WRITES
 #include "layout.glsl"
 #include "math.glsl"
-#include "grid.glsl"
+#include "levels.glsl"
 #include "light.glsl"
 #include "volume.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = WAVE_PATHS) writeonly buffer Paths { Path paths[]; };
 layout(std430, binding = WAVE_LIT_RAYS) writeonly buffer LitRays { uint lit_rays[]; };
@@ -36,7 +35,7 @@ void main() {
     LightSample light = sample_light(lights[params.light], x, vec2(0.5));
     VolumeInfo volume = volumes[params.volume];
     bool seen = volume_cells[volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))].counts != CELL_NOTHING;
-    Ray ray = new_ray(x, light.towards, seen ? enter_grid(grid, x, light.towards) : NONE, NONE);
+    Ray ray = new_ray(x, light.towards, seen ? enter_scene(x, light.towards) : NONE, NONE);
     ray.hit_t = light.distance;
     store_ray(at, ray);
     paths[at].pixel = 0u;

@@ -19,7 +19,7 @@
 #define STATE_READS
 #include "layout.glsl"
 #include "math.glsl"
-#include "grid.glsl"
+#include "levels.glsl"
 #include "eigen.glsl"
 #include "fit.glsl"
 #include "polynomial.glsl"
@@ -29,7 +29,6 @@
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; uint rejected; };
 layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
 layout(std430, binding = REFINE_OFFSETS) readonly buffer Offsets { uint offsets[]; };
@@ -55,23 +54,53 @@ ListedPoint listed_point(uint i) {
 #define MAX_ROWS 1024u   // of cells that a neighbourhood may span
 #define MAX_LISTED 2048u // points in them
 
-// Rows of cells, along x, around a point.
-struct Rows {
+// Cells of one grid around a place, as rows along x.
+struct RowBox {
     uvec3 low;
     uvec3 high;
+    uint count;
+};
+
+RowBox row_box(uint level, vec3 x, float radius, uvec2 slots) {
+    RowBox box;
+    cells_around(levels[level].grid, x, radius, box.low, box.high);
+    box.count = lists_some(level, slots) ? (box.high.y - box.low.y + 1u) * (box.high.z - box.low.z + 1u) : 0u;
+    return box;
+}
+
+// Those of all grids, one grid after another.
+struct Rows {
+    RowBox first; // of the first grid
+    vec3 x;
+    float radius;
+    uvec2 slots;
     uint count; // 0 where there are too many, or too many points in them
 };
 
 uvec2 row_range(Rows rows, uint row) {
-    uint height = rows.high.y - rows.low.y + 1u;
-    uvec2 yz = rows.low.yz + uvec2(row % height, row / height);
-    return uvec2(offsets[cell_id(grid, uvec3(rows.low.x, yz))], offsets[cell_id(grid, uvec3(rows.high.x, yz)) + 1u]);
+    uint level = 0u;
+    RowBox box = rows.first;
+    if (scene_has(SCENE_LEVELS)) {
+        while (row >= box.count && level + 1u < level_count()) {
+            row -= box.count;
+            ++level;
+            box = row_box(level, rows.x, rows.radius, rows.slots);
+        }
+    }
+    uint height = box.high.y - box.low.y + 1u;
+    uvec2 yz = box.low.yz + uvec2(row % height, row / height);
+    GridLevel at = levels[level];
+    return uvec2(offsets[at.first_offset + cell_id(at.grid, uvec3(box.low.x, yz))],
+                 offsets[at.first_offset + cell_id(at.grid, uvec3(box.high.x, yz)) + 1u]);
 }
 
-Rows rows_around(vec3 x, float radius) {
-    Rows rows;
-    cells_around(grid, x, radius, rows.low, rows.high);
-    uint count = (rows.high.y - rows.low.y + 1u) * (rows.high.z - rows.low.z + 1u);
+// `slots` are those of the object whose points are asked for: the first, and how many.
+Rows rows_around(vec3 x, float radius, uvec2 slots) {
+    Rows rows = Rows(row_box(0u, x, radius, slots), x, radius, slots, 0u);
+    uint count = rows.first.count;
+    for (uint level = 1u; level < level_count(); ++level) {
+        count += min(row_box(level, x, radius, slots).count, MAX_ROWS + 1u);
+    }
     rows.count = count <= MAX_ROWS ? count : 0u;
     uint listed = 0u;
     for (uint row = 0u; row < rows.count; ++row) {
@@ -192,10 +221,10 @@ void main() {
     vec3 from_stored = hit.position - stored.xyz;
 
     float moved = outcomes[ray.hit_slot].trust - stored.w; // > 0 where the ball was clipped: from point to centre
-    Rows near = rows_around(hit.position, sqrt(dot3(from_stored, from_stored)) + moved);
+    Rows near = rows_around(hit.position, sqrt(dot3(from_stored, from_stored)) + moved, slots);
     FitOutcome nearest = outcomes[nearest_slot(near, hit.position, ray.hit_slot, moved > 0.0, slots)];
     float h = nearest.feature_size;
-    Rows rows = rows_around(hit.position, REACH * h);
+    Rows rows = rows_around(hit.position, REACH * h, slots);
     uint kind;
     Polynomial p = fit_at(rows, hit.position, h, nearest.trust, object, slots, kind);
 

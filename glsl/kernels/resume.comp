@@ -14,12 +14,11 @@
 #define STATE_READS
 #define STATE_WRITES
 #include "layout.glsl"
-#include "grid.glsl"
+#include "levels.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
 layout(std430, binding = WAVE_MARKS) buffer Marks { uint marks[]; };
 layout(push_constant) uniform Push { TraceParams params; };
@@ -33,7 +32,9 @@ void main() {
     ray.after = ray.hit_t;
     ray.hit_t = NO_HIT;
     ray.hit_slot = NONE;
-    ray.cell = cell_id(grid, cell_of(grid, ray.origin + ray.after * ray.direction));
+    ray.cell = cell_around(0u, ray.origin + ray.after * ray.direction);
+    if (scene_has(SCENE_LEVELS)) ray.cell = enter_from(0u, ray.origin, ray.direction, vec2(ray.after, NO_HIT));
+    ray.entry = ray.cell;
     ray.cursor = 0u;
     store_ray(at, ray);
     atomicOr(marks[at / 32u], 1u << (at & 31u));

@@ -21,7 +21,7 @@
 #include "environment.glsl"
 #include "hits.glsl"
 #include "math.glsl"
-#include "grid.glsl"
+#include "levels.glsl"
 #include "optics.glsl"
 #include "sampler.glsl"
 #include "state.glsl"
@@ -29,7 +29,6 @@
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
 layout(std430, binding = WAVE_NEXT_PATHS) writeonly buffer NextPaths { Path next_paths[]; };
 layout(std430, binding = WAVE_TALLY) buffer Tally { uint dark_count; uint reflected_count; };
@@ -131,7 +130,7 @@ void send(Turn turn, Path path, uint channels, uint to) {
     if (turn.goes_on) {
         store_path(to, turn.ray, path, turn.throughput, channels | was_reflected, !passes, !reflects, turn.object,
                    turn.crossing.place);
-        uint cell = enter_grid(grid, turn.hit.position, direction);
+        uint cell = enter_scene(turn.hit.position, direction);
         store_ray(to, new_ray(turn.hit.position, direction, cell, turn.slot));
         if (reflects) atomicAdd(reflected_count, 1u);
     } else {

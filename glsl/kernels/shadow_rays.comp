@@ -15,13 +15,12 @@
 #define STATE_WRITES
 #include "layout.glsl"
 #include "math.glsl"
-#include "grid.glsl"
+#include "levels.glsl"
 #include "light.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
 layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
@@ -54,7 +53,7 @@ void main() {
     light_sums[at].arriving = arriving;
     Ray shadow = no_ray();
     if (arrives) {
-        shadow = new_ray(hit.position, light.towards, enter_grid(grid, hit.position, light.towards), hit.slot);
+        shadow = new_ray(hit.position, light.towards, enter_scene(hit.position, light.towards), hit.slot);
         shadow.hit_t = light.distance;
     } else {
         atomicAdd(dark_count, 1u);

@@ -12,12 +12,11 @@
 #define STATE_READS
 #define LISTS
 #include "layout.glsl"
-#include "grid.glsl"
+#include "levels.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
 layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
 layout(push_constant) uniform Push { TraceParams params; };

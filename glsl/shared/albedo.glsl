@@ -7,14 +7,13 @@
 #ifndef ALBEDO_GLSL
 #define ALBEDO_GLSL
 #include "blend.glsl"
-#include "grid.glsl"
 #include "image.glsl"
 #include "scene.glsl"
 #include "objects.glsl"
 #define LISTS
+#include "around.glsl"
 #include "records.glsl"
 
-layout(std430, binding = TRACE_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = SHADE_COLORS) readonly buffer Colors { float colors[]; };
 
 // Points of a cell that are asked. Two loops over so many stay under what lavapipe allows a dispatch.
@@ -34,8 +33,23 @@ vec3 value_of(ObjectInfo object, uint slot) {
 vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
     vec3 sum = 1e-6 * value_of(object, slot);
     float weights = 1e-6;
-    uvec2 range = range_of(cell_id(grid, cell_of(grid, x)));
-    uint end = object.first_color != NONE ? min(range.y, range.x + MOST_ASKED) : range.x;
+    uvec2 slots = uvec2(object.first_slot, object.slot_count);
+    Around around = points_around(x, slots);
+    uvec2 range = around.range;
+    uint end = object.first_color != NONE && !around.several ? min(range.y, range.x + MOST_ASKED) : range.x;
+    if (scene_has(SCENE_LEVELS)) {
+        if (around.several) {
+            Merge merge = merge_around(x, slots);
+            uint near = next_around(merge, x, slots);
+            while (near != NONE) {
+                vec3 normal;
+                float weight = weight_at(polynomial_of(near), x, normal);
+                sum += weight * value_of(object, near);
+                weights += weight;
+                near = next_around(merge, x, slots);
+            }
+        }
+    }
     for (uint first = range.x; first < end; first += ASKED_AT_ONCE) {
         uint count = min(end - first, ASKED_AT_ONCE);
         uint holding = 0u;
@@ -43,8 +57,8 @@ vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
             uint near = slot_at(first + i);
             vec4 ball = center_trust_of(near);
             vec3 y = x - ball.xyz;
-            bool holds = near - object.first_slot < object.slot_count && dot3(y, y) < ball.w * ball.w;
-            holding |= holds ? 1u << i : 0u;
+            bool is_near = near - object.first_slot < object.slot_count && dot3(y, y) < ball.w * ball.w;
+            holding |= is_near ? 1u << i : 0u;
         }
         while (holding != 0u) {
             uint near = slot_at(first + uint(findLSB(holding)));

@@ -26,6 +26,11 @@ uvec3 cell_of(GridInfo grid, vec3 x) {
     return uvec3(clamp(at, vec3(0.0), vec3(grid.resolution) - 1.0));
 }
 
+bool in_box(GridInfo grid, vec3 x) {
+    vec3 at = (x - grid.origin) * grid.inverse_edge;
+    return all(greaterThanEqual(at, vec3(0.0))) && all(lessThan(at, vec3(grid.resolution)));
+}
+
 // Cells low .. high (inclusive) hold every cell that the ball could meet.
 void cells_around(GridInfo grid, vec3 center, float radius, out uvec3 low, out uvec3 high) {
     low = cell_of(grid, center - radius);
@@ -74,10 +79,9 @@ vec2 clip_slab(vec2 range, float low, float high, float o, float d) {
     return crosses ? clipped : (inside ? range : vec2(NO_HIT, -NO_HIT));
 }
 
-// The first cell of a ray that starts anywhere, or NONE where it misses the grid.
-uint enter_grid(GridInfo grid, vec3 o, vec3 d) {
+// The first cell of a ray within a range of distances, or NONE where it misses the grid there.
+uint enter_grid(GridInfo grid, vec3 o, vec3 d, vec2 range) {
     vec3 high = grid.origin + vec3(grid.resolution) * grid.edge;
-    vec2 range = vec2(0.0, NO_HIT);
     range = clip_slab(range, grid.origin.x, high.x, o.x, d.x);
     range = clip_slab(range, grid.origin.y, high.y, o.y, d.y);
     range = clip_slab(range, grid.origin.z, high.z, o.z, d.z);

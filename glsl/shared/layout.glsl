@@ -115,6 +115,7 @@
 #define WAVE_LIT_RAYS 26
 #define WAVE_LIGHT_SUMS 27
 
+#define MOST_LEVELS 16 // grids of a scene
 #define STATE_ROW 1024 // texels a row of the ray state's images
 #define MEDIA_WORDS 8 // of a path: two media each
 
@@ -173,6 +174,7 @@
 #define SCENE_VOLUMES 32768 // paths carry what volumes emit
 #define SCENE_MANY_LIGHTS 65536 // more than one
 #define SCENE_SKIPS 131072  // rays leave empty cells together
+#define SCENE_LEVELS 262144 // several grids
 
 // What transparent pictures leave the background out of.
 #define TRANSPARENT_CAMERA 1 // camera rays
@@ -342,6 +344,15 @@ struct GridInfo {        // 32 bytes
     float inverse_edge;  // 28
 };
 
+// One of the grids of a scene.
+struct GridLevel {       // 48 bytes
+    GridInfo grid;       //  0
+    uint first_cell;     // 32  in the cells of all grids
+    uint first_offset;   // 36  in the offsets of the points of all grids' cells
+    uint first_slot;     // 40  the lowest slot that it lists
+    uint end_slot;       // 44  past the highest
+};
+
 // Of one slab: some layers of cells along z.
 struct GridParams {      // 28 bytes
     uint point_count;    //  0
@@ -349,7 +360,7 @@ struct GridParams {      // 28 bytes
     float ball_scale;    //  8  radius listed over trust radius; 0: each point in its own cell alone
     uint first_layer;    // 12
     uint end_layer;      // 16  past the last
-    uint first_pair;     // 20  pairs of the slabs before
+    uint first_pair;     // 20  pairs of the slabs and grids before
     uint any_large;      // 24  1: balls may be large
 };
 
@@ -624,7 +635,7 @@ struct StateRay {        // 64 bytes
     uvec4 position;      //  0  origin, nearest hit so far
     uvec4 direction;     // 16  direction, cells crossed
     uvec4 cell;          // 32  cell, cursor, tests, slot of the hit
-    uvec4 start;         // 48  the point that it left, hits to pass over
+    uvec4 start;         // 48  the point that it left, hits to pass over, the cell where it came into this grid
 };
 
 // At a diffuse hit.

@@ -1,11 +1,11 @@
 // meeting: where a ray that has ended met the polynomial that it hit.
 //
 // twin  crates/reference/src/surface_hit.rs
-// Whoever includes this has `grid` and the grid's lists.
+// Whoever includes this has the lists of the grids.
 #ifndef MEETING_GLSL
 #define MEETING_GLSL
+#include "around.glsl"
 #include "blend.glsl"
-#include "grid.glsl"
 #include "objects.glsl"
 #include "polynomial.glsl"
 #include "records.glsl"
@@ -18,9 +18,21 @@
 // The mean of the normals of the object's polynomials around x, by their weights. First the trust balls
 // that hold x, up to 32 into a bit mask, then their normals: few of a cell do.
 vec3 blended_normal(vec3 x, vec3 normal, uint object) {
-    uvec2 range = range_of(cell_id(grid, cell_of(grid, x)));
-    uint end = min(range.y, range.x + MOST_BLENDED);
+    uvec2 slots = uvec2(object_at(object).first_slot, object_at(object).slot_count);
+    Around around = points_around(x, slots);
+    uvec2 range = around.range;
+    uint end = around.several ? range.x : min(range.y, range.x + MOST_BLENDED);
     vec3 sum = 1e-6 * normal; // where nothing has a weight, the hit's own
+    if (scene_has(SCENE_LEVELS)) {
+        if (around.several) {
+            Merge merge = merge_around(x, slots);
+            uint near = next_around(merge, x, slots);
+            while (near != NONE) {
+                sum += weighted_normal(polynomial_of(near), x, normal);
+                near = next_around(merge, x, slots);
+            }
+        }
+    }
     for (uint first = range.x; first < end; first += ASKED_AT_ONCE) {
         uint count = min(end - first, ASKED_AT_ONCE);
         uint holding = 0u;

@@ -9,6 +9,7 @@
 #define STATE_GLSL
 #include "layout.glsl"
 #include "math.glsl"
+#include "scene.glsl"
 
 struct Ray {
     vec3 origin;     // centred scene space
@@ -21,10 +22,11 @@ struct Ray {
     uint hit_slot;   // the point hit, or NONE
     uint left;       // the point whose surface it starts on, or NONE
     float after;     // hits up to this distance do not count: they were refined away
+    uint entry;      // the cell where it came into the grid that it is in, of several
 };
 
 Ray new_ray(vec3 origin, vec3 direction, uint cell, uint left) {
-    return Ray(origin, NO_HIT, direction, 0u, cell, 0u, 0u, NONE, left, 0.0);
+    return Ray(origin, NO_HIT, direction, 0u, cell, 0u, 0u, NONE, left, 0.0, cell);
 }
 
 Ray no_ray() {
@@ -38,7 +40,8 @@ Ray load_ray(uint at) {
     StateRay ray = state_of(at);
     return Ray(uintBitsToFloat(ray.position.xyz), uintBitsToFloat(ray.position.w),
                uintBitsToFloat(ray.direction.xyz), ray.direction.w,
-               ray.cell.x, ray.cell.y, ray.cell.z, ray.cell.w, ray.start.x, uintBitsToFloat(ray.start.y));
+               ray.cell.x, ray.cell.y, ray.cell.z, ray.cell.w, ray.start.x, uintBitsToFloat(ray.start.y),
+               ray.start.z);
 }
 #endif
 
@@ -61,6 +64,7 @@ void store_ray(uint at, Ray ray) {
     state_out[at].direction = uvec4(floatBitsToUint(ray.direction), ray.cells);
     state_out[at].cell = uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot);
     state_out[at].start.xy = uvec2(ray.left, floatBitsToUint(ray.after));
+    if (scene_has(SCENE_LEVELS)) state_out[at].start.z = ray.entry;
 }
 
 // A ray that has gone on: it starts where it did.
@@ -68,6 +72,7 @@ void store_progress(uint at, Ray ray) {
     state_out[at].position.w = floatBitsToUint(ray.hit_t);
     state_out[at].direction.w = ray.cells;
     state_out[at].cell = uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot);
+    if (scene_has(SCENE_LEVELS)) state_out[at].start.z = ray.entry;
 }
 #endif
 
@@ -100,7 +105,7 @@ void store_ray(uint at, Ray ray) {
     imageStore(position_out, texel, uvec4(floatBitsToUint(ray.origin), floatBitsToUint(ray.hit_t)));
     imageStore(direction_out, texel, uvec4(floatBitsToUint(ray.direction), ray.cells));
     imageStore(cell_out, texel, uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot));
-    imageStore(start_out, texel, uvec4(ray.left, floatBitsToUint(ray.after), 0u, 0u));
+    imageStore(start_out, texel, uvec4(ray.left, floatBitsToUint(ray.after), ray.entry, 0u));
 }
 
 // The images swap after a pass, so all of a ray is written.

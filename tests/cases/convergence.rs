@@ -9,8 +9,8 @@ use harness::{fibonacci_sphere, plan_of, random, set_of};
 use points::Unwatched;
 use reference::Reference;
 use reference::camera_rays::{Ray, camera_ray};
-use reference::grid::Grid;
 use reference::grid_trace::grid_trace;
+use reference::levels::Levels;
 use reference::real::V3;
 use reference::refine::{Refined, Surroundings, resume};
 use reference::surface_hit::{Hit, surface_hit};
@@ -120,14 +120,14 @@ fn hit_of(
     ray: &mut Ray<f64>,
 ) -> Option<Hit<f64>> {
     loop {
-        grid_trace(ray, around.grid, &reference.lists, &reference.polynomials, false);
+        grid_trace(ray, around.levels, &reference.lists, &reference.polynomials, false);
         let hit = surface_hit(ray, &reference.polynomials)?;
         if around.objects[0].max_iterations == 0 {
             return Some(hit);
         }
         match around.refine(ray, hit) {
             Refined::Accepted(hit, _) => return Some(hit),
-            Refined::Rejected(_) => resume(ray, around.grid),
+            Refined::Rejected(_) => resume(ray, around.levels),
         }
     }
 }
@@ -148,9 +148,9 @@ fn measure(shape: &Shape, polynomial: &str, project: bool, count: u32) -> Errors
     );
     let plan = plan_of(&text, &[set_of((shape.points)(count))]);
     let reference = Reference::<f64>::new(&plan, &Unwatched).expect("nobody interrupts");
-    let grid = Grid::from(&reference.grid);
+    let levels = Levels::from(&reference.grids);
     let around = Surroundings {
-        grid: &grid,
+        levels: &levels,
         polynomials: &reference.polynomials,
         points: &plan.cloud.points,
         outcomes: &reference.outcomes,
@@ -160,7 +160,8 @@ fn measure(shape: &Shape, polynomial: &str, project: bool, count: u32) -> Errors
     let camera = plan.camera_of(&plan.window, 0);
     let (mut distances, mut angles) = (Vec::new(), Vec::new());
     for pixel in 0..SIZE[0] * SIZE[1] {
-        let mut ray = camera_ray(&camera, &plan.filter, &grid, [pixel % SIZE[0], pixel / SIZE[0]]);
+        let mut ray =
+            camera_ray(&camera, &plan.filter, &levels, [pixel % SIZE[0], pixel / SIZE[0]]);
         let Some(hit) = hit_of(&reference, &around, &mut ray) else { continue };
         let (distance, normal) = (shape.nearest)(hit.position + V3(plan.cloud.origin));
         if -normal.dot(ray.direction) > GRAZING {

@@ -118,7 +118,7 @@ fn rendered(device: &Arc<Device>, plan: &Plan, work: Option<u32>) -> Rendered {
     let mut polynomials =
         vec![<layout::Polynomial as bytemuck::Zeroable>::zeroed(); plan.cloud.points.len()];
     surfaces.polynomials.read(0, &mut polynomials).expect("polynomials");
-    let mut cells = vec![[0u32; 2]; surfaces.grid.cell_count() as usize];
+    let mut cells = vec![[0u32; 2]; surfaces.grids.cell_count() as usize];
     surfaces.cells.read(0, &mut cells).expect("cells");
     let listed = cells.iter().filter(|range| range[0] < range[1]).map(|range| range[1]).max();
     let mut slots = vec![0u32; listed.unwrap_or(0) as usize];

@@ -50,8 +50,11 @@ pub fn load_small(path: &Path, size: [u32; 2]) -> Option<Scene> {
 /// The plan of a scene and the files that it names.
 #[must_use]
 pub fn plan_of_scene(scene: &Scene) -> Plan {
-    let set = |path: &Path| points::read(path, &mut |_, _| {}).expect("a readable point file");
-    let sets: Vec<_> = scene.objects.iter().map(|object| Arc::new(set(&object.points))).collect();
+    let set = |object: &scene::Object| {
+        let options = plan::read_options(object);
+        points::read_with(&object.points, &options, &mut |_, _| {}).expect("a readable point file")
+    };
+    let sets: Vec<_> = scene.objects.iter().map(|object| Arc::new(set(object))).collect();
     let image = |file: &ImageFile| Arc::new(film::read_image(&file.path).expect("an image"));
     let texture = |albedo: &Albedo| match albedo {
         Albedo::Texture { file, .. } => Some(image(file)),

@@ -65,8 +65,9 @@ pub struct RenderArgs {
     /// Write R, G, B, A and N of EXR files in 16 bits instead of 32; all other channels stay
     #[arg(long)]
     pub half: bool,
-    /// Which axis of a point file points upwards [default: y]
-    #[arg(long, value_name = "AXIS")]
+    /// Which axis of a point file points upwards [default: z of LAS, LAZ and E57 files, -y of organised PCD
+    /// files, which depth cameras write, else y]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
     pub up: Option<UpAxis>,
     #[command(flatten)]
     pub device: DeviceArgs,
@@ -273,6 +274,8 @@ impl RenderArgs {
 pub enum UpAxis {
     Y,
     Z,
+    #[value(name = "-y")]
+    MinusY,
 }
 
 impl From<UpAxis> for scene::Up {
@@ -280,6 +283,7 @@ impl From<UpAxis> for scene::Up {
         match axis {
             UpAxis::Y => Self::Y,
             UpAxis::Z => Self::Z,
+            UpAxis::MinusY => Self::MinusY,
         }
     }
 }

@@ -6,8 +6,9 @@ use crate::interrupt;
 use crate::progress::Progress;
 use film::Film;
 use gpu::{Device, DeviceChoice, Instance, InstanceOptions};
-use kernels::layout::{FitOutcome, GridInfo};
+use kernels::layout::FitOutcome;
 use plan::{Picture, Plan, Rays};
+use points::Grids;
 use reference::Reference;
 use render::{RayLoop, Renderer, Traversal};
 use std::sync::Arc;
@@ -194,12 +195,12 @@ impl Built {
         }
     }
 
-    /// Where the grid lies.
-    pub fn grid(&self) -> &GridInfo {
+    /// Where the grids lie.
+    pub fn grids(&self) -> &Grids {
         match &self.surfaces {
-            BuiltOn::Gpu(renderer) => &renderer.surfaces().grid,
-            BuiltOn::Single(reference) => &reference.grid,
-            BuiltOn::Double(reference) => &reference.grid,
+            BuiltOn::Gpu(renderer) => &renderer.surfaces().grids,
+            BuiltOn::Single(reference) => &reference.grids,
+            BuiltOn::Double(reference) => &reference.grids,
         }
     }
 

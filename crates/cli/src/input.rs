@@ -94,10 +94,17 @@ impl Input {
     /// Loads and checks a scene file, or makes the scene that a point file means. Reads no points.
     pub fn load(path: &Path, values: &SceneValues, up: Option<UpAxis>) -> Result<Self, Failure> {
         let set = values.as_set();
+        let own_up = || match points::usual_up(path) {
+            _ if is_scene_file(path) => Up::Y,
+            points::Upwards::Y => Up::Y,
+            points::Upwards::Z => Up::Z,
+            points::Upwards::MinusY => Up::MinusY,
+        };
+        let turned = up.map_or_else(own_up, Up::from);
         let loaded = if is_scene_file(path) {
             Scene::load(path, &set)
         } else {
-            Scene::for_point_file(path, up.map_or(Up::Y, Up::from), &set)
+            Scene::for_point_file(path, turned, &set)
         };
         let mut scene = loaded.map_err(|error| values.name_options(error.into()))?;
         if let (true, Some(_), Some(_)) = (is_scene_file(path), up, scene.camera) {
@@ -112,7 +119,7 @@ impl Input {
             object.points_as_written =
                 path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         }
-        Ok(Self { path: path.into(), scene, up: up.map_or(Up::Y, Up::from) })
+        Ok(Self { path: path.into(), scene, up: turned })
     }
 
     /// Every file that the picture is made from.

@@ -2,7 +2,7 @@
 
 use crate::engine::{Built, Engine, Frame};
 use film::Film;
-use kernels::layout::{FIT_FULL, FIT_INCOMPLETE, FIT_NO_SURFACE, FIT_PLANE};
+use kernels::layout::{FIT_FULL, FIT_INCOMPLETE, FIT_NO_SURFACE, FIT_PLANE, GridLevel};
 use plan::Plan;
 use render::Traversal;
 use schemars::JsonSchema;
@@ -75,8 +75,8 @@ pub struct Row {
     pub filtered_out: u64,
     /// How the fits ended.
     pub fits: Fits,
-    /// The grid.
-    pub grid: Grid,
+    /// The grids, the finest first: one, or several where sizes of trust balls differ.
+    pub grids: Vec<Grid>,
     /// Milliseconds of each kernel in the last frame.
     pub kernels: BTreeMap<&'static str, f64>,
     /// Pixels that hit a surface.
@@ -136,7 +136,7 @@ pub struct Fits {
     pub none: u64,
 }
 
-/// The uniform grid.
+/// One of the grids.
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 pub struct Grid {
     /// Cells along each axis.
@@ -174,7 +174,11 @@ impl Row {
     pub fn new(measured: &Measured<'_>) -> Self {
         let Measured { engine, plan, built, frame, .. } = *measured;
         let points = plan.point_count;
-        let grid = built.grid();
+        let grid_of = |level: &GridLevel| Grid {
+            resolution: level.grid.resolution,
+            edge: level.grid.edge,
+            cells: level.grid.cell_count(),
+        };
         let trace_ms = Spread::of(measured.trace);
         let rays = Rays {
             camera: frame.rays.camera,
@@ -217,7 +221,7 @@ impl Row {
             dropped: measured.dropped,
             filtered_out: measured.filtered_out,
             fits: Fits::of(built),
-            grid: Grid { resolution: grid.resolution, edge: grid.edge, cells: grid.cell_count() },
+            grids: built.grids().levels.iter().map(grid_of).collect(),
             kernels: frame.kernels.iter().copied().collect(),
             hits: frame.hits,
             origin: plan.cloud.origin,

@@ -320,6 +320,10 @@ constants! {
     SCENE_MANY_LIGHTS = 65536;
     /// Rays leave empty cells together.
     SCENE_SKIPS = 131_072;
+    /// Bit of the specialization constant `SCENE`: the scene has several grids.
+    SCENE_LEVELS = 262_144;
+    /// Grids of a scene, at most.
+    MOST_LEVELS = 16;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
     VOLUME_SHEPARD = 0;
     /// [`VolumeInfo::kernel`] of the weighted sum.
@@ -632,6 +636,25 @@ impl GridInfo {
         self.resolution.iter().product()
     }
 }
+
+/// One of the grids of a scene, which share buffers.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GridLevel {
+    /// Where it lies.
+    pub grid: GridInfo,
+    /// In the cells of all grids.
+    pub first_cell: u32,
+    /// In the offsets of the points of all grids' cells.
+    pub first_offset: u32,
+    /// The lowest slot that it lists.
+    pub first_slot: u32,
+    /// Past the highest.
+    pub end_slot: u32,
+}
+gpu_layout!(GridLevel, 48, {
+    grid: 0, first_cell: 32, first_offset: 36, first_slot: 40, end_slot: 44,
+});
 
 /// Push constants of the grid build.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -1250,7 +1273,8 @@ pub struct StateRay {
     pub direction: [u32; 4],
     /// Cell or `NONE`, cursor in it, points tested, slot of the hit or `NONE`.
     pub cell: [u32; 4],
-    /// The point whose surface it starts on or `NONE`, up to where hits do not count; two unused.
+    /// The point whose surface it starts on or `NONE`, up to where hits do not count, the cell where it came
+    /// into the grid that it is in, of several; one unused.
     pub start: [u32; 4],
 }
 gpu_layout!(StateRay, 64, { position: 0, direction: 16, cell: 32, start: 48 });
@@ -1318,6 +1342,7 @@ pub const STRUCTS: &[StructLayout] = &[
     ClipParams::LAYOUT,
     FitParams::LAYOUT,
     GridInfo::LAYOUT,
+    GridLevel::LAYOUT,
     GridParams::LAYOUT,
     ScanParams::LAYOUT,
     SortParams::LAYOUT,

@@ -22,12 +22,11 @@ pub(crate) fn frame<'a>(
     up: Up,
 ) -> Camera {
     let center = 0.5 * DVec3::from(bounds[0]) + 0.5 * DVec3::from(bounds[1]);
+    let DVec3 { x, y, z } = FRAMING_DIRECTION;
     let (direction, up) = match up {
         Up::Y => (FRAMING_DIRECTION, DVec3::Y),
-        Up::Z => {
-            let DVec3 { x, y, z } = FRAMING_DIRECTION;
-            (DVec3::new(x, -z, y), DVec3::Z)
-        }
+        Up::Z => (DVec3::new(x, -z, y), DVec3::Z),
+        Up::MinusY => (DVec3::new(x, -y, -z), DVec3::NEG_Y),
     };
     let forward = -direction.normalize();
     let right = forward.cross(up).normalize();
@@ -237,7 +236,7 @@ mod tests {
         let corners: Vec<[f64; 3]> = (0..8)
             .map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { low[axis] } else { high[axis] }))
             .collect();
-        for (up, size) in [(Up::Y, [640, 480]), (Up::Z, [640, 480]), (Up::Y, [100, 400])] {
+        for (up, size) in [(Up::Y, [640, 480]), (Up::Z, [640, 480]), (Up::MinusY, [100, 400])] {
             let camera = frame(corners.iter(), [low, high], size, up);
             let view = View::new(&camera, size, [0.0; 3]);
             let inside: Vec<[f32; 2]> = corners

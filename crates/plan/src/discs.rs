@@ -2,8 +2,9 @@
 
 use crate::{Diagnostic, Plan, Primary, Window};
 use kernels::layout::{
-    CameraParams, CameraTraceParams, DISC_TILE, DepthRanks, DiscParams, GridInfo, PERSPECTIVE,
+    CameraParams, CameraTraceParams, DISC_TILE, DepthRanks, DiscParams, PERSPECTIVE,
 };
+use points::Grids;
 
 /// Pairs of a screen tile and a point that one tile of the picture may have. One binding holds 32
 /// million on any device; what has more is traced through the grid, which gives the same bytes.
@@ -12,6 +13,8 @@ pub const MAX_DISC_PAIRS: u32 = 16_000_000;
 const KEY_BITS: u32 = 21;
 /// Depths are told apart from the farthest down to this share of it.
 const NEAREST_SHARE: f64 = 1.0 / 64.0;
+/// With several grids down to this many cells of the finest: small things may be near.
+const NEAREST_CELLS: f64 = 64.0;
 
 /// Points a pixel up to which discs are faster than the grid: each picture bins all points anew.
 /// Measured in docs/benchmarks.md.
@@ -44,12 +47,12 @@ impl Plan {
         self.cells_per_pass != 0 || self.diagnostics.iter().any(|shown| counts.contains(shown))
     }
 
-    /// Parameters of `disc_count` for one tile of the picture. The grid says where the points are.
+    /// Parameters of `disc_count` for one tile of the picture. The grids say where the points are.
     #[must_use]
-    pub fn discs_of(&self, tile: &Window, grid: &GridInfo) -> DiscParams {
+    pub fn discs_of(&self, tile: &Window, grids: &Grids) -> DiscParams {
         DiscParams {
             camera: self.camera_of(tile, 0),
-            ranks: depth_ranks(self.camera.eye, grid, screen_tiles(tile)),
+            ranks: depth_ranks(self.camera.eye, grids, screen_tiles(tile)),
             point_count: self.cloud.points.len() as u32,
             pair_count: 0,
         }
@@ -64,7 +67,7 @@ impl Plan {
 
     /// Parameters of `camera_trace` for one tile, whose rays may spend so much work.
     #[must_use]
-    pub fn camera_trace_of(&self, tile: &Window, grid: &GridInfo, work: u32) -> CameraTraceParams {
+    pub fn camera_trace_of(&self, tile: &Window, grids: &Grids, work: u32) -> CameraTraceParams {
         let wave = self.wave_of(tile, 0);
         let CameraParams { eye, scale, right, half_width, up, half_height, forward, .. } =
             self.camera;
@@ -80,7 +83,7 @@ impl Plan {
             tile_origin: tile.origin,
             tile_size: tile.size,
             background: wave.background,
-            ranks: self.discs_of(tile, grid).ranks,
+            ranks: self.discs_of(tile, grids).ranks,
             transparent: wave.transparent,
             max_bounces: wave.max_bounces,
         }
@@ -93,7 +96,8 @@ pub fn screen_tiles(tile: &Window) -> u32 {
     tile.size[0].div_ceil(DISC_TILE) * tile.size[1].div_ceil(DISC_TILE)
 }
 
-fn depth_ranks(eye: [f32; 3], grid: &GridInfo, tiles: u32) -> DepthRanks {
+fn depth_ranks(eye: [f32; 3], grids: &Grids, tiles: u32) -> DepthRanks {
+    let grid = grids.whole();
     let (mut near, mut far) = (0.0, 0.0);
     for (axis, eye) in eye.into_iter().map(f64::from).enumerate() {
         let low = f64::from(grid.origin[axis]) - eye;
@@ -103,7 +107,11 @@ fn depth_ranks(eye: [f32; 3], grid: &GridInfo, tiles: u32) -> DepthRanks {
         far += most * most;
     }
     let farthest = (far.sqrt() as f32).max(f32::MIN_POSITIVE);
-    let nearest = (near.sqrt().max(far.sqrt() * NEAREST_SHARE) as f32).max(f32::MIN_POSITIVE);
+    let told_apart = match grids.are_several() {
+        true => (far.sqrt() * NEAREST_SHARE).min(NEAREST_CELLS * f64::from(grids.finest_edge())),
+        false => far.sqrt() * NEAREST_SHARE,
+    };
+    let nearest = (near.sqrt().max(told_apart) as f32).max(f32::MIN_POSITIVE);
     let nearest = nearest.min(farthest);
     let bits = KEY_BITS - (u32::BITS - tiles.saturating_sub(1).leading_zeros());
     let steps = farthest.to_bits() - nearest.to_bits();
@@ -114,9 +122,10 @@ fn depth_ranks(eye: [f32; 3], grid: &GridInfo, tiles: u32) -> DepthRanks {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use kernels::layout::GridInfo;
 
-    fn grid(origin: [f32; 3], edge: f32) -> GridInfo {
-        GridInfo { origin, edge, resolution: [2; 3], inverse_edge: 1.0 / edge }
+    fn grid(origin: [f32; 3], edge: f32) -> Grids {
+        Grids::single(GridInfo { origin, edge, resolution: [2; 3], inverse_edge: 1.0 / edge })
     }
 
     #[test]

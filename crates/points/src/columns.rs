@@ -6,7 +6,7 @@
 use crate::collect::Collector;
 use crate::error::PointsError;
 use crate::field::Type;
-use crate::meaning::{SAMPLE_ROWS, Sample};
+use crate::meaning::{SAMPLE_ROWS, Sample, printable};
 use crate::source::Seekable;
 use std::cell::RefCell;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -16,6 +16,26 @@ use std::path::Path;
 const BLOCK: usize = 1 << 18;
 /// Bytes of a file that are read at once for one array.
 const BUFFER: usize = 1 << 16;
+
+/// Arrays that take more bytes than this take at most [`MAX_EXPANSION`] times the file's: beyond,
+/// the file is taken for one that was made to fill memory.
+const FREE_BYTES: u64 = 1 << 28;
+const MAX_EXPANSION: u64 = 100;
+
+/// Refuses packed arrays that are far larger than the file. `bytes` is their size unpacked,
+/// `length` the file's.
+pub(crate) fn check_expansion(path: &Path, bytes: u64, length: u64) -> Result<(), PointsError> {
+    if bytes <= FREE_BYTES || bytes / MAX_EXPANSION <= length {
+        return Ok(());
+    }
+    Err(PointsError::wrong(
+        path,
+        "the size of the unpacked arrays",
+        format!("{bytes} bytes"),
+        &format!("at most {MAX_EXPANSION} times the file's {length}"),
+        "save them without compression",
+    ))
+}
 
 /// A file that is read at several places.
 pub(crate) type Shared<'a> = RefCell<Seekable<'a>>;
@@ -238,7 +258,7 @@ impl<'f> SideBySide<'f> {
             let found = array.numbers.next(block).map_err(|error| match error.kind() {
                 io::ErrorKind::InvalidData => PointsError::wrong(
                     self.path,
-                    &format!("the data of '{}'", array.name),
+                    &format!("the data of '{}'", printable(&array.name)),
                     &error,
                     "what the header says",
                     "the file is damaged: copy or export it again",
@@ -288,7 +308,7 @@ impl<'f> SideBySide<'f> {
 fn cut_off(path: &Path, array: &Array<'_>, declared: u64, found: u64) -> PointsError {
     PointsError::CutOff {
         path: path.into(),
-        what: format!("values of '{}'", array.name),
+        what: format!("values of '{}'", printable(&array.name)),
         declared,
         found,
         bytes_declared: None,

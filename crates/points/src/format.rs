@@ -4,7 +4,7 @@ use crate::error::PointsError;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
-use crate::{e57, las, npy, obj, off, pcd, ply, text};
+use crate::{e57, las, npy, obj, off, pcd, ply, text, vtk};
 use std::path::Path;
 
 /// A format that points are read from.
@@ -33,6 +33,13 @@ pub(crate) static FORMATS: &[Format] = &[
         sniff: npy::sniff_archive,
         read: npy::read_archive,
     },
+    Format { name: "VTK", extensions: &["vtk"], sniff: vtk::sniff_legacy, read: vtk::read_legacy },
+    Format {
+        name: "VTK XML",
+        extensions: &["vtu", "vtp", "vts", "vtr", "vti", "pvtu", "pvtp"],
+        sniff: vtk::sniff_xml,
+        read: vtk::read_xml,
+    },
     Format {
         name: "OFF",
         extensions: &["off", "coff", "noff"],
@@ -47,6 +54,28 @@ pub(crate) static FORMATS: &[Format] = &[
         read: text::read,
     },
 ];
+
+/// Which way is up in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Upwards {
+    /// +y, as in most models.
+    Y,
+    /// +z, as in surveys.
+    Z,
+    /// -y, as in what a depth camera sees.
+    MinusY,
+}
+
+impl Format {
+    /// Which way is up in files of this format that begin so, as a rule.
+    pub(crate) fn usual_up(&self, start: &[u8]) -> Upwards {
+        match self.name {
+            "LAS" | "E57" => Upwards::Z,
+            "PCD" if pcd::is_organised(start) => Upwards::MinusY,
+            _ => Upwards::Y,
+        }
+    }
+}
 
 /// What a file with this beginning is read as: the first format that its contents look like, of
 /// several the one with its extension; where they look like none, that with its extension, whose

@@ -1,11 +1,18 @@
-//! Where the uniform grid lies and how fine it is (\[T\] §5).
+//! Where the grids lie and how fine they are (\[T\] §5).
 //!
-//! Plain data, made from the trust balls of the fitted points. The paper gives 20³ cells for 35 000
-//! points; measurement (docs/benchmarks.md) puts the best edge at two to three trust radii, which
+//! Plain data, made from the trust balls of the fitted points. The paper gives one grid, of 20³ cells for
+//! 35 000 points; measurement (docs/benchmarks.md) puts the best edge at two to three trust radii, which
 //! is a little finer, and with even points is the same rule: it follows their number.
+//!
+//! One grid cannot be fine for a statue and coarse for the landscape around it. Where the sizes of trust
+//! balls differ much, each size has its own grid, over no more than the place where such balls are: a
+//! hierarchical grid (Ericson, Real-Time Collision Detection, 2005, section 7.2). A ray goes through one after
+//! another, the finest first.
 
-use kernels::layout::{FitOutcome, GridInfo, Point};
+use kernels::layout::{FitOutcome, GridInfo, GridLevel, MOST_LEVELS, Point};
 use rayon::prelude::*;
+use std::borrow::Cow;
+use std::collections::VecDeque;
 
 /// Radius that the grid lists a point with, over its trust radius: rounding then loses no cell that a
 /// hit lies in.
@@ -26,53 +33,314 @@ const PAIRS_ALLOWED: f64 = 32_000_000.0;
 /// Cells from which on it pays that rays leave empty ones together: the search for distances, and more work a step.
 const SKIPPING_CELLS: u32 = 150_000;
 
-/// Whether empty cells of a grid tell how far they are from others.
-#[must_use]
-pub fn skips_cells(grid: &GridInfo) -> bool {
-    grid.cell_count() >= SKIPPING_CELLS
+/// A grid is too coarse where its cells are so much wider than those that its small balls would have alone, and where
+/// most of these have over so many others in their cell; on an even surface it is some twelve.
+const TOO_COARSE: f64 = 1.5;
+const CROWDED: u32 = 64;
+/// Small balls: those up to the radius of this one of all, or of one in a hundred where that is less.
+const SMALL_BALLS: usize = 256;
+/// Radii of one grid differ by this much, and up to the emptiest radius within this range.
+const ONE_SIZE: f64 = 4.0;
+const VALLEY: [f64; 2] = [2.0, 8.0];
+/// Part of a grid's length that must be empty for two to be made of it, and in how many parts it is looked for.
+const GAP: f64 = 0.1;
+const GAP_BINS: usize = 256;
+/// Parts of the cells and offsets of all grids begin at multiples of this many, so that they can be bound.
+const FIRST_CELL: u32 = 64;
+
+/// Trust balls: centre and radius.
+type Ball = ([f64; 3], f64);
+
+/// The grids of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grids {
+    /// One, or several where sizes of trust balls differ: then the finest first.
+    pub levels: Vec<GridLevel>,
+    /// Slots of each, ascending, where there are several.
+    slots: Vec<Vec<u32>>,
+}
+
+impl Grids {
+    fn new(mut groups: Vec<(GridInfo, Vec<u32>)>) -> Self {
+        let key = |info: &GridInfo| (info.edge.to_bits(), info.origin.map(f32::to_bits));
+        groups.sort_by_key(|(info, _)| key(info));
+        let mut levels: Vec<GridLevel> = Vec::new();
+        let (mut first_cell, mut first_offset) = (0, 0);
+        for (grid, slots) in &groups {
+            let cells = grid.cell_count();
+            levels.push(GridLevel {
+                grid: *grid,
+                first_cell,
+                first_offset,
+                first_slot: slots.first().map_or(0, |&slot| slot),
+                end_slot: slots.last().map_or(0, |&slot| slot + 1),
+            });
+            first_cell += cells.next_multiple_of(FIRST_CELL);
+            first_offset += (cells + 1).next_multiple_of(FIRST_CELL);
+        }
+        Self { levels, slots: groups.into_iter().map(|(_, slots)| slots).collect() }
+    }
+
+    /// One alone.
+    #[must_use]
+    pub fn single(grid: GridInfo) -> Self {
+        Self::new(vec![(grid, Vec::new())])
+    }
+
+    /// Cells of all, and between them those that are none.
+    #[must_use]
+    pub fn cell_count(&self) -> u32 {
+        self.levels.last().map_or(0, |last| last.first_cell + last.grid.cell_count())
+    }
+
+    /// Whether empty cells tell how far they are from others.
+    #[must_use]
+    pub fn skip_cells(&self) -> bool {
+        self.cell_count() >= SKIPPING_CELLS
+    }
+
+    /// Edge of the finest one's cells.
+    #[must_use]
+    pub fn finest_edge(&self) -> f32 {
+        self.levels[0].grid.edge
+    }
+
+    /// Whether there are several.
+    #[must_use]
+    pub fn are_several(&self) -> bool {
+        self.levels.len() > 1
+    }
+
+    /// The slots of one grid, in the order that all of `order` have.
+    #[must_use]
+    pub fn order_of<'a>(&self, level: usize, order: &'a [u32]) -> Cow<'a, [u32]> {
+        if !self.are_several() {
+            return Cow::Borrowed(order);
+        }
+        let mut listed = vec![false; order.len()];
+        for &slot in &self.slots[level] {
+            listed[slot as usize] = true;
+        }
+        Cow::Owned(order.iter().copied().filter(|&slot| listed[slot as usize]).collect())
+    }
+
+    /// The box around all of them, as a grid.
+    #[must_use]
+    pub fn whole(&self) -> GridInfo {
+        let [first, _, ..] = self.levels[..] else { return self.levels[0].grid };
+        let [mut low, mut high] = [first.grid.origin; 2];
+        for GridLevel { grid, .. } in &self.levels {
+            low = [0, 1, 2].map(|axis| low[axis].min(grid.origin[axis]));
+            let end = |axis: usize| grid.origin[axis] + grid.resolution[axis] as f32 * grid.edge;
+            high = [0, 1, 2].map(|axis| high[axis].max(end(axis)));
+        }
+        let extent = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+        let edge = extent.into_iter().fold(0.0, f32::max);
+        let inverse_edge = 1.0 / edge;
+        GridInfo { origin: low, edge, resolution: [1; 3], inverse_edge }
+    }
 }
 
 const EMPTY: GridInfo =
     GridInfo { origin: [-0.5; 3], edge: 1.0, resolution: [1; 3], inverse_edge: 1.0 };
 
-/// The grid over all trust balls; a single empty cell where no point carries a surface.
+/// The grids over all trust balls; a single empty cell where no point carries a surface.
 ///
-/// `resolution` is the number of cells along the longest axis, or 0: chosen from the points. Either
-/// way the edge grows until cells and pairs stay within bounds.
+/// `resolution` is the number of cells along the longest axis of a single grid, or 0: grids are chosen from the
+/// points. Either way edges grow until cells and pairs stay within bounds.
 #[must_use]
-pub fn plan_grid(points: &[Point], outcomes: &[FitOutcome], resolution: u32) -> GridInfo {
-    let balls: Vec<([f64; 3], f64)> = points
+pub fn plan_grids(points: &[Point], outcomes: &[FitOutcome], resolution: u32) -> Grids {
+    let carries = |outcome: &FitOutcome| outcome.trust > 0.0;
+    let balls: Vec<Ball> = points
         .par_iter()
         .zip(outcomes)
         .with_min_len(1 << 14)
-        .filter(|(_, outcome)| outcome.trust > 0.0)
+        .filter(|(_, outcome)| carries(outcome))
         .map(|(point, outcome)| (point.position.map(f64::from), f64::from(outcome.trust)))
         .collect();
-    let mut radii: Vec<f64> = balls.iter().map(|ball| ball.1).collect();
-    if radii.is_empty() {
-        return EMPTY;
+    if balls.is_empty() {
+        return Grids::single(EMPTY);
     }
-    let half = radii.len() / 2;
-    let median = *radii.select_nth_unstable_by(half, f64::total_cmp).1;
+    let mut radii: Vec<f64> = balls.iter().map(|ball| ball.1).collect();
+    if resolution > 0 {
+        return Grids::single(plan_grid(&balls, 0.0, resolution, 1.0));
+    }
+    let (grid, is_fine) = plan_fine(&balls, &mut radii, 1.0);
+    if is_fine {
+        return Grids::single(grid);
+    }
+    let slots = (0..).zip(outcomes).filter(|(_, outcome)| carries(outcome)).map(|(slot, _)| slot);
+    Grids::new(split(Group { balls, slots: slots.collect() }))
+}
+
+/// Balls that one grid may hold, and the slots of their points, ascending.
+#[derive(Default)]
+struct Group {
+    balls: Vec<Ball>,
+    slots: Vec<u32>,
+}
+
+impl Group {
+    /// The balls for which this is true, and the others.
+    fn parted(self, is_first: &dyn Fn(&Ball) -> bool) -> [Self; 2] {
+        let mut parts = [Self::default(), Self::default()];
+        for (ball, slot) in self.balls.into_iter().zip(self.slots) {
+            let part = &mut parts[usize::from(!is_first(&ball))];
+            part.balls.push(ball);
+            part.slots.push(slot);
+        }
+        parts
+    }
+}
+
+/// Parts balls by size, then by place, until no grid is too coarse, or none can be parted, or there are many.
+fn split(all: Group) -> Vec<(GridInfo, Vec<u32>)> {
+    let count = all.balls.len() as f64;
+    let (mut done, mut groups) = (Vec::new(), VecDeque::from([all]));
+    while let Some(group) = groups.pop_front() {
+        let mut radii: Vec<f64> = group.balls.iter().map(|ball| ball.1).collect();
+        let share = radii.len() as f64 / count;
+        let (grid, is_fine) = plan_fine(&group.balls, &mut radii, share);
+        let may_part = done.len() + groups.len() + 2 <= MOST_LEVELS as usize;
+        if !may_part || is_fine {
+            done.push((grid, group.slots));
+        } else if let Some(radius) = radius_between(&mut radii) {
+            groups.extend(group.parted(&|ball| ball.1 < radius));
+        } else if let Some((axis, place)) = widest_gap(&group.balls) {
+            groups.extend(group.parted(&|ball| ball.0[axis] < place));
+        } else {
+            done.push((grid, group.slots));
+        }
+    }
+    done
+}
+
+/// One grid over these balls, which are so large a share of all, and whether it is fine enough: for most of them, or
+/// where small ones crowd, for those.
+fn plan_fine(balls: &[Ball], radii: &mut [f64], share: f64) -> (GridInfo, bool) {
+    let least = small(radii);
+    let grid = plan_grid(balls, median(radii), 0, share);
+    if !is_too_coarse(&grid, balls, least) {
+        return (grid, true);
+    }
+    let finer = plan_grid(balls, least, 0, share);
+    let is_fine = !is_too_coarse(&finer, balls, least);
+    (if is_fine { finer } else { grid }, is_fine)
+}
+
+fn nth(radii: &mut [f64], n: usize) -> f64 {
+    *radii.select_nth_unstable_by(n, f64::total_cmp).1
+}
+
+fn median(radii: &mut [f64]) -> f64 {
+    nth(radii, radii.len() / 2)
+}
+
+/// The radius of small balls.
+fn small(radii: &mut [f64]) -> f64 {
+    nth(radii, (radii.len() / 100).min(SMALL_BALLS))
+}
+
+/// Whether small balls crowd in cells that are made for larger ones. `radius` is theirs.
+fn is_too_coarse(grid: &GridInfo, balls: &[Ball], radius: f64) -> bool {
+    if f64::from(grid.edge) <= TOO_COARSE * EDGE_PER_TRUST * radius {
+        return false;
+    }
+    let [nx, ny, _] = grid.resolution.map(|n| n as usize);
+    let cell_of = |center: &[f64; 3]| {
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            let at = (center[axis] - f64::from(grid.origin[axis])) / f64::from(grid.edge);
+            (at as usize).min(grid.resolution[axis] as usize - 1)
+        });
+        x + nx * (y + ny * z)
+    };
+    let mut counts = vec![0u32; grid.cell_count() as usize];
+    for (center, _) in balls {
+        counts[cell_of(center)] += 1;
+    }
+    let mut crowds: Vec<u32> = (balls.iter().filter(|ball| ball.1 <= radius))
+        .map(|(center, _)| counts[cell_of(center)])
+        .collect();
+    let half = crowds.len() / 2;
+    *crowds.select_nth_unstable(half).1 > CROWDED
+}
+
+/// The radius that parts small balls from others, where there are others: where the fewest are, in the middle of
+/// those places, by the logarithm.
+fn radius_between(radii: &mut [f64]) -> Option<f64> {
+    const BINS: usize = 32;
+    let least = small(radii);
+    let large = nth(radii, radii.len() - 1 - (radii.len() / 100).min(SMALL_BALLS));
+    if large <= ONE_SIZE * least {
+        return None;
+    }
+    let [from, to] = [VALLEY[0] * least, (VALLEY[1] * least).min(large)].map(f64::ln);
+    let mut counts = [0u32; BINS];
+    for radius in radii.iter() {
+        let at = (radius.ln() - from) / (to - from) * BINS as f64;
+        if at >= 0.0 && at < BINS as f64 {
+            counts[at as usize] += 1;
+        }
+    }
+    let fewest = *counts.iter().min()?;
+    let bins: Vec<usize> = (0..BINS).filter(|&bin| counts[bin] == fewest).collect();
+    let middle = bins[bins.len() / 2] as f64 + 0.5;
+    Some((from + (to - from) * middle / BINS as f64).exp())
+}
+
+/// The middle of the widest stretch along an axis that no ball reaches, if it is worth two grids.
+fn widest_gap(balls: &[Ball]) -> Option<(usize, f64)> {
+    let [low, high] = bounds_of(balls);
+    let mut widest = None;
+    let mut width = GAP * (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+    for axis in 0..3 {
+        let bin = (high[axis] - low[axis]) / GAP_BINS as f64;
+        let mut reached = [false; GAP_BINS];
+        for (center, radius) in balls {
+            let place = |x: f64| (((x - low[axis]) / bin) as usize).min(GAP_BINS - 1);
+            reached[place(center[axis] - radius)..=place(center[axis] + radius)].fill(true);
+        }
+        let mut first = 0;
+        for (at, reached) in reached.into_iter().enumerate() {
+            if reached {
+                first = at + 1;
+            } else if (at + 1 - first) as f64 * bin > width {
+                width = (at + 1 - first) as f64 * bin;
+                widest = Some((axis, low[axis] + 0.5 * (first + at + 1) as f64 * bin));
+            }
+        }
+    }
+    widest
+}
+
+/// Lowest and highest corner of the box around all balls.
+fn bounds_of(balls: &[Ball]) -> [[f64; 3]; 2] {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for (center, radius) in &balls {
+    for (center, radius) in balls {
         for axis in 0..3 {
             low[axis] = low[axis].min(center[axis] - radius * 1.001);
             high[axis] = high[axis].max(center[axis] + radius * 1.001);
         }
     }
+    [low, high]
+}
+
+/// One grid over these balls, for this radius, as far as so large a share of all may have cells and pairs.
+fn plan_grid(balls: &[Ball], radius: f64, resolution: u32, share: f64) -> GridInfo {
+    let [low, high] = bounds_of(balls);
     let extent = [0, 1, 2].map(|axis| high[axis] - low[axis]);
     let longest = extent[0].max(extent[1]).max(extent[2]);
     let mut edge = match resolution {
-        0 => EDGE_PER_TRUST * median,
+        0 => EDGE_PER_TRUST * radius,
         cells => longest * 1.000_02 / f64::from(cells),
     };
     // A coordinate's rounding must stay small beside a cell.
     edge = edge.max(longest * 1e-5);
-    let allowed =
-        |per_point: f64, most: f64| (per_point * balls.len() as f64).clamp(ALWAYS_ALLOWED, most);
+    let allowed = |per_point: f64, most: f64| {
+        (per_point * balls.len() as f64).min(share * most).max(ALWAYS_ALLOWED)
+    };
     while cell_count(extent, edge) > allowed(CELLS_PER_POINT, CELLS_ALLOWED)
-        || pair_count(&balls, low, edge) > allowed(PAIRS_PER_POINT, PAIRS_ALLOWED)
+        || pair_count(balls, low, edge) > allowed(PAIRS_PER_POINT, PAIRS_ALLOWED)
     {
         edge *= 1.1;
         if edge > 2.0 * longest {
@@ -96,8 +364,8 @@ fn cell_count(extent: [f64; 3], edge: f64) -> f64 {
 }
 
 /// Cells around all balls, as `grid_count` counts them, up to rounding.
-fn pair_count(balls: &[([f64; 3], f64)], low: [f64; 3], edge: f64) -> f64 {
-    let cells = |(center, radius): &([f64; 3], f64)| -> f64 {
+fn pair_count(balls: &[Ball], low: [f64; 3], edge: f64) -> f64 {
+    let cells = |(center, radius): &Ball| -> f64 {
         (0..3)
             .map(|axis| {
                 let from = ((center[axis] - radius - low[axis]) / edge).floor();
@@ -114,13 +382,19 @@ mod tests {
     use super::*;
 
     fn plan(balls: &[([f32; 3], f32)], resolution: u32) -> GridInfo {
+        let grids = plan_levels(balls, resolution);
+        assert!(!grids.are_several());
+        grids.levels[0].grid
+    }
+
+    fn plan_levels(balls: &[([f32; 3], f32)], resolution: u32) -> Grids {
         let points: Vec<Point> =
             balls.iter().map(|&(position, _)| Point { position, index: 0 }).collect();
         let outcomes: Vec<FitOutcome> = balls
             .iter()
             .map(|&(_, trust)| FitOutcome { trust, kind: 3, feature_size: trust })
             .collect();
-        plan_grid(&points, &outcomes, resolution)
+        plan_grids(&points, &outcomes, resolution)
     }
 
     #[test]
@@ -152,7 +426,57 @@ mod tests {
             .map(|i| ([(i % 100) as f32 * 0.01, (i / 100) as f32 * 0.01, 0.0], 0.02))
             .collect();
         balls.push(([1e6, 1e6, 1e6], 1e6));
-        let grid = plan(&balls, 0);
+        let grid = plan(&balls, 100_000);
         assert!(f64::from(grid.cell_count()) <= CELLS_PER_POINT * 10_001.0, "{grid:?}");
+    }
+
+    /// `count` squared balls on a square of this width, as large as they lie apart.
+    fn square(corner: [f32; 3], width: f32, count: u32) -> Vec<([f32; 3], f32)> {
+        let step = width / count as f32;
+        let at = |i: u32| [corner[0] + step * (i % count) as f32, corner[1], corner[2]];
+        (0..count * count)
+            .map(|i| (at(i), (i / count) as f32 * step))
+            .map(|([x, y, z], along)| ([x, y + along, z], step))
+            .collect()
+    }
+
+    #[test]
+    fn each_size_and_place_has_its_grid() {
+        let land = square([-500.0, -500.0, 0.0], 1000.0, 100);
+        let (here, there) = (square([0.0; 3], 1.0, 60), square([300.0, 200.0, 1.0], 1.0, 60));
+        let grids = plan_levels(&[land, here, there].concat(), 0);
+        let grid = |at: usize| grids.levels[at].grid;
+        assert_eq!(grids.levels.len(), 3);
+        for at in [0, 1] {
+            assert!((grid(at).edge * 60.0 / 2.5 - 1.0).abs() < 1e-3, "{:?}", grid(at));
+        }
+        assert!((grid(2).edge / 25.0 - 1.0).abs() < 1e-3, "{:?}", grid(2));
+        // Slots of all grids, in the given order, are those of all points.
+        let order: Vec<u32> = (0..17_200).rev().collect();
+        let counts = [0, 1, 2].map(|level| grids.order_of(level, &order).len());
+        assert_eq!(counts, [3600, 3600, 10_000]);
+        assert_eq!(grids.order_of(2, &order)[0], 9999);
+        let [first, second, third] = &grids.levels[..] else { unreachable!("three") };
+        let [one, other] = [first, second].map(|level| level.first_slot);
+        assert_eq!([one.min(other), one.max(other), third.end_slot], [10_000, 13_600, 10_000]);
+        assert!(
+            second.first_cell >= first.grid.cell_count() && second.first_cell % FIRST_CELL == 0
+        );
+        assert!(third.first_offset > second.first_offset + second.grid.cell_count());
+    }
+
+    /// Radii from 1 to 1000, as from a scanner that sees far.
+    #[test]
+    fn sizes_without_a_gap_are_parted_too() {
+        let balls: Vec<([f32; 3], f32)> = (0..20_000)
+            .map(|i| {
+                let radius = 1000f32.powf(i as f32 / 20_000.0);
+                let angle = i as f32 * 2.4;
+                ([radius * 50.0 * angle.cos(), radius * 50.0 * angle.sin(), 0.0], radius)
+            })
+            .collect();
+        let grids = plan_levels(&balls, 0);
+        assert!((3..=8).contains(&grids.levels.len()), "{:?}", grids.levels);
+        assert!(grids.levels.windows(2).all(|pair| pair[0].grid.edge < pair[1].grid.edge));
     }
 }

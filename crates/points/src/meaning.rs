@@ -209,6 +209,12 @@ pub(crate) fn spread(name: &str, width: usize) -> Vec<String> {
     names.iter().map(|&name| name.to_owned()).collect()
 }
 
+/// A name for messages and attributes: short, on one line, whatever it is.
+pub(crate) fn printable(name: &str) -> String {
+    const LONGEST: usize = 100;
+    name.chars().take(LONGEST).map(|sign| if sign.is_control() { '_' } else { sign }).collect()
+}
+
 /// Whether an array of this name holds positions.
 pub(crate) fn is_position(name: &str) -> bool {
     POSITIONS.contains(&plain(name).as_str())
@@ -263,7 +269,7 @@ pub(crate) fn by_names(names: &[String], kinds: Option<&[Type]>, sample: &Sample
         field.unwrap_or_else(|| {
             let name = match names[place].trim() {
                 "" => format!("column_{}", place + 1),
-                name => name.to_owned(),
+                name => printable(name),
             };
             Field::new(name, stated(place).unwrap_or(Type::F64))
         })

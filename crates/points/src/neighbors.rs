@@ -6,6 +6,8 @@
 //! rounding is monotone, so no neighbour is pruned by rounding. Points that coincide share a leaf of
 //! which a query reads at most k + 1, so a million identical points cost no more than others.
 
+pub use crate::spacing::median_spacing;
+
 use kernels::layout::{NONE, Point};
 use rayon::prelude::*;
 
@@ -214,36 +216,6 @@ fn build(points: &[Point], members: &mut [u32], first: usize, nodes: &mut Vec<No
     let right = build(points, right, first + half, nodes);
     nodes[at].content = Content::Children([left, right]);
     at as u32
-}
-
-/// Median over the points of the distance to the nearest other point, in the units of the
-/// positions; `None` for fewer than two points. Points that coincide are at distance 0.
-#[must_use]
-pub fn median_spacing(positions: &[[f64; 3]]) -> Option<f64> {
-    let file_index: Vec<u32> = (0..positions.len() as u32).collect();
-    let object = crate::ObjectPoints { positions, file_index: &file_index };
-    let cloud = crate::Cloud::new(&[object]).ok()?;
-    let lists = NeighborSearch::new(&cloud.points, 0).nearest(0..cloud.points.len(), 1);
-    let mut distances: Vec<f64> = cloud
-        .points
-        .iter()
-        .zip(&lists)
-        .filter_map(|(point, &neighbor)| {
-            let other = cloud.points.get(neighbor as usize)?;
-            let [a, b] = [point.index, other.index].map(|index| positions[index as usize]);
-            Some([0, 1, 2].map(|axis| (b[axis] - a[axis]).powi(2)).iter().sum::<f64>().sqrt())
-        })
-        .collect();
-    let half = distances.len() / 2;
-    if distances.is_empty() {
-        return None;
-    }
-    let (below, &mut median, _) = distances.select_nth_unstable_by(half, f64::total_cmp);
-    if file_index.len() % 2 == 1 {
-        return Some(median);
-    }
-    let lower = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    Some(0.5 * (lower + median))
 }
 
 #[cfg(test)]

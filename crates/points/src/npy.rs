@@ -75,10 +75,11 @@ pub(crate) fn read(
 ) -> Result<PointSet, PointsError> {
     let io_error = |source| PointsError::Io { path: path.into(), source };
     let file: Shared<'_> = RefCell::new(source.seekable().map_err(io_error)?);
-    let open = || -> io::Result<Box<dyn Read + '_>> {
-        Ok(Box::new(Part::new(&file, 0, u64::MAX).buffered()))
+    file.borrow_mut().begin_pass(false);
+    let open = |place: u64| -> io::Result<Box<dyn Read + '_>> {
+        Ok(Box::new(Part::new(&file, place, u64::MAX).buffered()))
     };
-    let header = Header::read(&mut open().map_err(io_error)?).map_err(|e| e.at(path, ""))?;
+    let header = Header::read(&mut open(0).map_err(io_error)?).map_err(|e| e.at(path, ""))?;
     let rows = Rows::of(&header).map_err(|e| e.at(path, ""))?;
     if !header.record.has_names && rows.names.len() < 3 {
         let found = format!("the shape {}", header.shape_in_words());
@@ -97,6 +98,7 @@ pub(crate) fn read(
             bytes_found: Some(left),
         });
     }
+    file.borrow_mut().begin_pass(true);
     let arrays = rows.arrays(&header, "data", &open).map_err(io_error)?;
     let table = SideBySide::new(arrays, rows.points, path)?;
     let kinds = rows.kinds();
@@ -177,28 +179,23 @@ impl Rows {
         (elements * header.record.size) as u64
     }
 
-    /// What reads the numbers of all points. `open` gives the array anew, from its header on.
+    /// What reads the numbers of all points. `open` gives the array from a place on.
     fn arrays<'f>(
         &self,
         header: &Header,
         name: &str,
-        open: &dyn Fn() -> io::Result<Box<dyn Read + 'f>>,
+        open: &dyn Fn(u64) -> io::Result<Box<dyn Read + 'f>>,
     ) -> io::Result<Vec<Array<'f>>> {
-        let after = |skip: u64| -> io::Result<Box<dyn Read + 'f>> {
-            let mut reader = open()?;
-            io::copy(&mut reader.by_ref().take(skip), &mut io::sink())?;
-            Ok(reader)
-        };
         let name = name.to_owned();
         if !self.apart {
             let size = self.point_size(header) as usize;
-            let records = Records::new(after(header.length)?, size, self.places.clone());
+            let records = Records::new(open(header.length)?, size, self.places.clone());
             return Ok(vec![Array { name, width: self.places.len(), numbers: Box::new(records) }]);
         }
         let column_size = self.points.saturating_mul(header.record.size as u64);
         let columns = (0..).zip(&self.places).map(|(column, place)| {
             let skip = header.length.saturating_add(column_size.saturating_mul(column));
-            let records = Records::of(after(skip)?, place.coding, place.big, 1);
+            let records = Records::of(open(skip)?, place.coding, place.big, 1);
             Ok(Array { name: name.clone(), width: 1, numbers: Box::new(records) })
         });
         columns.collect()

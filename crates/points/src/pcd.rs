@@ -27,6 +27,13 @@ pub(crate) fn sniff(start: &[u8]) -> bool {
     start.starts_with(b"# .PCD") || start.starts_with(b"VERSION ") || start.starts_with(b"# .pcd")
 }
 
+/// Whether a file that begins so has its points in rows and columns, like a picture.
+pub(crate) fn is_organised(start: &[u8]) -> bool {
+    let height = start.split(|&byte| byte == b'\n').find_map(|line| line.strip_prefix(b"HEIGHT "));
+    let rows = height.and_then(|rows| std::str::from_utf8(rows).ok()?.trim().parse::<u64>().ok());
+    rows.is_some_and(|rows| rows > 1)
+}
+
 pub(crate) fn read(
     mut source: Source<'_>,
     path: &Path,

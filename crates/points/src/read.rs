@@ -1,12 +1,12 @@
 //! Opens point files, and finds out what they are.
 
 use crate::error::{PointsError, Quoted};
-use crate::format;
+use crate::format::{self, Upwards};
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
 use std::fs::File;
-use std::io::Cursor;
+use std::io::{Cursor, Read};
 use std::path::Path;
 
 /// How much of a file tells its format.
@@ -48,7 +48,19 @@ pub fn read_with(
     read_source(source, path, options)
 }
 
-/// The same of bytes in memory. `name` stands in messages, and its extension tells the format where
+/// Which way is up in a file, as a rule for its format: z in surveys (LAS, LAZ, E57), -y in organised
+/// PCD files, which depth cameras write, else y. So it is too where the file cannot be read.
+pub fn usual_up(path: &Path) -> Upwards {
+    let mut start = Vec::new();
+    let opened = File::open(path).ok().filter(|file| file.metadata().is_ok_and(|m| m.is_file()));
+    let read = opened.map(|file| file.take(START as u64).read_to_end(&mut start));
+    match (read, format::of(&start, path)) {
+        (Some(Ok(1..)), Some(format)) => format.usual_up(&start),
+        _ => Upwards::Y,
+    }
+}
+
+/// As [`read_with`], of bytes in memory. `name` stands in messages, and its extension tells the format where
 /// the contents leave it open.
 ///
 /// # Errors

@@ -37,6 +37,18 @@ pub(crate) struct Seekable<'a> {
     at: u64,
     /// As far as any read has come.
     farthest: u64,
+    /// What counts instead where the file is read at several places in turn.
+    passes: Option<Passes>,
+}
+
+/// A file that is gone through several times.
+struct Passes {
+    /// What was reported before this pass.
+    before: u64,
+    /// What a whole file read in this pass adds to it.
+    share: u64,
+    /// Bytes read in this pass.
+    read: u64,
 }
 
 /// What stands in the file up to the next line end.
@@ -87,7 +99,14 @@ impl<'a> Source<'a> {
                 (Box::new(Cursor::new(bytes)), length)
             }
         };
-        Ok(Seekable { file, length, progress: self.progress, at: 0, farthest: 0 })
+        Ok(Seekable {
+            file,
+            length,
+            progress: self.progress,
+            at: 0,
+            farthest: self.read,
+            passes: None,
+        })
     }
 
     /// Bytes of the file that are not consumed, where its length is known.
@@ -184,7 +203,26 @@ impl<'a> Source<'a> {
     }
 }
 
+impl Passes {
+    fn reported(&self, length: u64) -> u64 {
+        let part = u128::from(self.share) * u128::from(self.read.min(length));
+        self.before + (part / u128::from(length.max(1))) as u64
+    }
+}
+
 impl Seekable<'_> {
+    /// From now on, progress is how much was read, wherever it was. A first pass is worth half of
+    /// the file at most, the last one what is left.
+    pub(crate) fn begin_pass(&mut self, last: bool) {
+        let before = match &self.passes {
+            Some(passes) => passes.reported(self.length),
+            None => self.farthest.min(self.length),
+        };
+        let left = self.length.saturating_sub(before);
+        let share = if last { left } else { left / 2 };
+        self.passes = Some(Passes { before, share, read: 0 });
+    }
+
     /// Bytes of the file.
     pub(crate) fn length(&self) -> u64 {
         self.length
@@ -210,6 +248,11 @@ impl Read for Seekable<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.file.read(buffer)?;
         self.at += count as u64;
+        if let Some(passes) = &mut self.passes {
+            passes.read += count as u64;
+            (self.progress)(passes.reported(self.length), self.length);
+            return Ok(count);
+        }
         if self.at > self.farthest {
             self.farthest = self.at;
             (self.progress)(self.farthest.min(self.length), self.length);

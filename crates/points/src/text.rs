@@ -11,6 +11,7 @@ mod split;
 use crate::collect::Collector;
 use crate::error::{PointsError, Quoted};
 use crate::lines::{Lines, SAMPLE, values};
+use crate::meaning::printable;
 use crate::number::number;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
@@ -127,7 +128,7 @@ impl Wrong {
                 (values(*found), format!("{columns} as in line {}", layout.shape_line))
             }
             Self::Word { word, column } => {
-                let name = layout.name_of(*column);
+                let name = printable(layout.name_of(*column));
                 (Quoted(word).to_string(), format!("a number for '{name}', column {}", column + 1))
             }
         }

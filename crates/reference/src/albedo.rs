@@ -1,20 +1,22 @@
 //! Twin of `glsl/shared/albedo.glsl`: the share of light that the surface of an object scatters back.
 
+use crate::around::points_around;
 use crate::blend::weight_at;
-use crate::grid::Grid;
 use crate::grid_build::CellLists;
 use crate::image::Images;
+use crate::levels::Levels;
 use crate::polynomial::Polynomial;
 use crate::real::{Real, V3};
 use kernels::layout::{NONE, ObjectInfo};
+use std::ops::Range;
 
 const MOST_ASKED: usize = 2048;
 
 /// What albedos depend on.
 #[derive(Debug, Clone, Copy)]
 pub struct Albedos<'a, R> {
-    /// Where the grid lies.
-    pub grid: &'a Grid<R>,
+    /// Where the grids lie.
+    pub levels: &'a Levels<R>,
     /// The points of each cell.
     pub lists: &'a CellLists,
     /// By slot.
@@ -38,14 +40,15 @@ impl<R: Real> Albedos<'_, R> {
 
     /// The mean over the points of the object around x; where none has a weight, the value of the point
     /// that was hit.
-    fn blended_value(&self, object: &ObjectInfo, index: u32, slot: u32, x: V3<R>) -> V3<R> {
-        let cell = self.grid.cell_id(self.grid.cell_of(x)) as usize;
-        let [first, end] = self.lists.cells[cell].map(|entry| entry as usize);
+    fn blended_value(&self, object: &ObjectInfo, slot: u32, x: V3<R>) -> V3<R> {
+        let slots = slots_of(object);
         let own = (self.value_of(object, slot).times(R::of(1e-6)), R::of(1e-6));
-        let (sum, weights) = self.lists.slots[first..end.min(first + MOST_ASKED)]
+        let around =
+            points_around(self.levels, self.lists, self.polynomials, x, slots.clone(), MOST_ASKED);
+        let (sum, weights) = around
             .iter()
+            .filter(|near| slots.contains(near))
             .map(|&near| (near, &self.polynomials[near as usize]))
-            .filter(|(_, p)| p.object == index)
             .fold(own, |(sum, weights), (near, p)| {
                 let (weight, _) = weight_at(p, x);
                 (sum + self.value_of(object, near).times(weight), weights + weight)
@@ -57,8 +60,7 @@ impl<R: Real> Albedos<'_, R> {
     #[must_use]
     pub fn albedo_at(&self, index: u32, slot: u32, x: V3<R>) -> V3<R> {
         let object = &self.objects[index as usize];
-        let value =
-            (object.first_color != NONE).then(|| self.blended_value(object, index, slot, x));
+        let value = (object.first_color != NONE).then(|| self.blended_value(object, slot, x));
         if object.texture == NONE {
             return value.unwrap_or_else(|| V3::of_f32(object.albedo));
         }
@@ -71,4 +73,10 @@ impl<R: Real> Albedos<'_, R> {
         let image = &self.images.infos[object.texture as usize];
         self.images.image_at(image, u, v, false)
     }
+}
+
+/// The slots of an object's points.
+#[must_use]
+pub fn slots_of(object: &ObjectInfo) -> Range<u32> {
+    object.first_slot..object.first_slot + object.slot_count
 }

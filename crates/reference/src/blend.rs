@@ -1,9 +1,11 @@
 //! Twin of `glsl/shared/blend.glsl` and of what `surface_hit` does with it.
 
-use crate::grid::Grid;
+use crate::around::points_around;
 use crate::grid_build::CellLists;
+use crate::levels::Levels;
 use crate::polynomial::Polynomial;
 use crate::real::{Real, V3};
+use std::ops::Range;
 
 const OTHER_SHEET: f64 = 0.1;
 const MOST_BLENDED: usize = 4096;
@@ -31,21 +33,19 @@ fn weighted_normal<R: Real>(p: &Polynomial<R>, x: V3<R>, towards: V3<R>) -> V3<R
     normal.times(if normal.dot(towards) < zero { -weight } else { weight })
 }
 
-/// The mean of the normals of the object's polynomials around x, by their weights.
+/// The mean of the normals of the polynomials of an object around x, by their weights.
 pub fn blended_normal<R: Real>(
-    grid: &Grid<R>,
+    levels: &Levels<R>,
     lists: &CellLists,
     polynomials: &[Polynomial<R>],
     x: V3<R>,
     normal: V3<R>,
-    object: u32,
+    slots: Range<u32>,
 ) -> V3<R> {
-    let [first, end] =
-        lists.cells[grid.cell_id(grid.cell_of(x)) as usize].map(|entry| entry as usize);
-    lists.slots[first..end.min(first + MOST_BLENDED)]
+    points_around(levels, lists, polynomials, x, slots.clone(), MOST_BLENDED)
         .iter()
+        .filter(|slot| slots.contains(slot))
         .map(|&slot| &polynomials[slot as usize])
-        .filter(|p| p.object == object)
         .fold(normal.times(R::of(1e-6)), |sum, p| sum + weighted_normal(p, x, normal))
         .normalize()
 }

@@ -1,6 +1,6 @@
 //! Twin of `camera_rays`: the camera's ray of a pixel, in the first cell that it meets.
 
-use crate::grid::Grid;
+use crate::levels::Levels;
 use crate::real::{NO_HIT, Real, V3};
 use crate::sampler::{concentric_disc, sample_2d};
 use kernels::layout::{
@@ -46,7 +46,7 @@ fn filter_place<R: Real>(filter: &[f32], u: R) -> R {
 pub fn camera_ray<R: Real>(
     params: &CameraParams,
     filter: &[f32],
-    grid: &Grid<R>,
+    levels: &Levels<R>,
     pixel: [u32; 2],
 ) -> Ray<R> {
     let zero = R::of(0.0);
@@ -73,13 +73,13 @@ pub fn camera_ray<R: Real>(
     let direction = ((forward + right.times(slope[0])) + up.times(slope[1])).normalize();
     let origin =
         if start == [zero; 2] { eye } else { (eye + right.times(start[0])) + up.times(start[1]) };
-    Ray::new(origin, direction, grid, NONE)
+    Ray::new(origin, direction, levels, NONE)
 }
 
 impl<R: Real> Ray<R> {
     /// A ray in the first cell that it meets, from the surface of a point or from nowhere.
     #[must_use]
-    pub fn new(origin: V3<R>, direction: V3<R>, grid: &Grid<R>, left: u32) -> Self {
+    pub fn new(origin: V3<R>, direction: V3<R>, levels: &Levels<R>, left: u32) -> Self {
         Self {
             origin,
             direction,
@@ -88,7 +88,7 @@ impl<R: Real> Ray<R> {
             hit_slot: NONE,
             left,
             passed: NONE,
-            cell: grid.enter(origin, direction),
+            cell: levels.enter(origin, direction),
             cells: 0,
             tests: 0,
         }

@@ -1,7 +1,7 @@
 //! Twin of `glsl/shared/grid.glsl`: cells of the uniform grid, and a ray's steps through them.
 
 use crate::real::{NO_HIT, Real, V3};
-use kernels::layout::{GridInfo, NONE};
+use kernels::layout::GridInfo;
 use points::BALL_MARGIN;
 
 const PARALLEL: f64 = 1e-20;
@@ -78,6 +78,15 @@ impl<R: Real> Grid<R> {
         })
     }
 
+    /// Whether x lies in the grid.
+    #[must_use]
+    pub fn holds(&self, x: V3<R>) -> bool {
+        let at = (x - self.origin).times(self.inverse_edge);
+        let within =
+            |axis: usize| at.0[axis] >= R::of(0.0) && at.0[axis] < R::of_u32(self.resolution[axis]);
+        (0..3).all(within)
+    }
+
     /// Lowest and highest cell (inclusive) of those that the ball could meet.
     #[must_use]
     pub fn cells_around(&self, ball: &Ball<R>) -> [[u32; 3]; 2] {
@@ -111,13 +120,13 @@ impl<R: Real> Grid<R> {
         }))
     }
 
-    /// The first cell of a ray that starts anywhere, or `NONE` where it misses the grid.
+    /// The first cell of a ray within a range of distances, or none where it misses the grid there.
     #[must_use]
-    pub fn enter(&self, o: V3<R>, d: V3<R>) -> u32 {
+    pub fn enter(&self, o: V3<R>, d: V3<R>, range: [R; 2]) -> Option<u32> {
         let along = |axis: usize| R::of_u32(self.resolution[axis]) * self.edge;
         let high = self.origin + V3([0, 1, 2].map(along));
-        let [near, far] = within_box(self.origin, high, o, d);
-        if near > far { NONE } else { self.cell_id(self.cell_of(o + d.times(near))) }
+        let [near, far] = clip_to_box(range, self.origin, high, o, d);
+        (near <= far).then(|| self.cell_id(self.cell_of(o + d.times(near))))
     }
 
     /// Where a ray's way through the cell begins and ends.
@@ -172,7 +181,12 @@ pub fn empty_around(range: [u32; 2]) -> u32 {
 
 /// Where a ray is within a box: the first over the second, nowhere.
 pub fn within_box<R: Real>(low: V3<R>, high: V3<R>, o: V3<R>, d: V3<R>) -> [R; 2] {
-    let (mut near, mut far) = (R::of(0.0), R::of(NO_HIT));
+    clip_to_box([R::of(0.0), R::of(NO_HIT)], low, high, o, d)
+}
+
+/// The part of a range of distances that lies within a box.
+fn clip_to_box<R: Real>(range: [R; 2], low: V3<R>, high: V3<R>, o: V3<R>, d: V3<R>) -> [R; 2] {
+    let [mut near, mut far] = range;
     for axis in 0..3 {
         let (o, d) = (o.0[axis], d.0[axis]);
         let (low, high) = (low.0[axis], high.0[axis]);
@@ -202,8 +216,7 @@ mod tests {
 
     fn walk(grid: &Grid<f64>, o: V3<f64>, d: V3<f64>) -> Vec<[u32; 3]> {
         let mut visited = Vec::new();
-        let id = grid.enter(o, d);
-        let mut next = (id != NONE).then(|| grid.cell_of_id(id));
+        let mut next = grid.enter(o, d, [0.0, NO_HIT]).map(|id| grid.cell_of_id(id));
         while let Some(cell) = next {
             visited.push(cell);
             next = grid.step(cell, 0, grid.crossings(cell, 0, o, d), o, d);

@@ -7,7 +7,7 @@ use crate::polynomial::Polynomial;
 use crate::real::Real;
 use crate::refine::PointCells;
 use kernels::layout::{GridInfo, MOST_SKIPPED};
-use points::skips_cells;
+use points::Grids;
 
 /// The points of each cell.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -19,13 +19,25 @@ pub struct CellLists {
     pub slots: Vec<u32>,
 }
 
-/// Lists the points that carry a surface by the cell they lie in, in the order of `order`.
+/// Lists the points that carry a surface by the cell they lie in, grid after grid, in the order of `order`.
 #[must_use]
 pub fn list_points<R: Real>(
-    grid: &Grid<R>,
+    grids: &Grids,
     polynomials: &[Polynomial<R>],
     order: &[u32],
 ) -> PointCells {
+    let mut all = PointCells::default();
+    for (at, level) in grids.levels.iter().enumerate() {
+        let own = list_in(&Grid::from(&level.grid), polynomials, &grids.order_of(at, order));
+        all.offsets.resize(level.first_offset as usize, 0);
+        let first = all.slots.len() as u32;
+        all.offsets.extend(own.offsets.into_iter().map(|offset| first + offset));
+        all.slots.extend(own.slots);
+    }
+    all
+}
+
+fn list_in<R: Real>(grid: &Grid<R>, polynomials: &[Polynomial<R>], order: &[u32]) -> PointCells {
     let mut pairs: Vec<(u32, u32)> = order
         .iter()
         .map(|&slot| (&polynomials[slot as usize], slot))
@@ -39,13 +51,31 @@ pub fn list_points<R: Real>(
     PointCells { offsets, slots: pairs.into_iter().map(|pair| pair.1).collect() }
 }
 
-/// Lists the points whose trust ball meets each cell. `order` holds slots by ordinal.
+/// Lists the points whose trust ball meets each cell, grid after grid. `order` holds slots by ordinal.
 #[must_use]
-pub fn build_grid<R: Real>(
-    info: &GridInfo,
+pub fn build_grids<R: Real>(
+    grids: &Grids,
     polynomials: &[Polynomial<R>],
     order: &[u32],
 ) -> CellLists {
+    let mut all = CellLists::default();
+    for (at, level) in grids.levels.iter().enumerate() {
+        let mut own = build_grid(&level.grid, polynomials, &grids.order_of(at, order));
+        let first = all.slots.len() as u32;
+        for range in own.cells.iter_mut().filter(|range| range[0] < range[1]) {
+            *range = range.map(|entry| first + entry);
+        }
+        if grids.skip_cells() {
+            skip_cells(level.grid.resolution, &mut own.cells);
+        }
+        all.cells.resize(level.first_cell as usize, [0, 0]);
+        all.cells.extend(own.cells);
+        all.slots.extend(own.slots);
+    }
+    all
+}
+
+fn build_grid<R: Real>(info: &GridInfo, polynomials: &[Polynomial<R>], order: &[u32]) -> CellLists {
     let grid = Grid::<R>::from(info);
     let mut pairs: Vec<(u32, u32)> = Vec::new();
     for &slot in order {
@@ -70,9 +100,6 @@ pub fn build_grid<R: Real>(
             range[0] = at as u32;
         }
         range[1] = at as u32 + 1;
-    }
-    if skips_cells(info) {
-        skip_cells(info.resolution, &mut cells);
     }
     CellLists { cells, slots: pairs.into_iter().map(|pair| pair.1).collect() }
 }

@@ -5,8 +5,9 @@
 
 use crate::batch::{BATCH, test_batch};
 use crate::camera_rays::Ray;
-use crate::grid::{Grid, empty_around, nearest_crossing};
+use crate::grid::{empty_around, nearest_crossing};
 use crate::grid_build::CellLists;
+use crate::levels::{Level, Levels};
 use crate::polynomial::Polynomial;
 use crate::real::{NO_HIT, Real};
 use kernels::layout::NONE;
@@ -14,23 +15,24 @@ use kernels::layout::NONE;
 /// Follows one ray until it ends, at the nearest hit or, where `any_hit`, at the first that is found.
 pub fn grid_trace<R: Real>(
     ray: &mut Ray<R>,
-    grid: &Grid<R>,
+    levels: &Levels<R>,
     lists: &CellLists,
     polynomials: &[Polynomial<R>],
     any_hit: bool,
 ) {
     let (o, d) = (ray.origin, ray.direction);
     let sheet = polynomials.get(ray.left as usize).map(|left| (left.normal_at(o), left.object));
-    if ray.cell == NONE {
-        return;
-    }
-    let mut next = Some(grid.cell_of_id(ray.cell));
-    while let Some(at) = next {
+    let mut entry = ray.cell; // where it came into the grid that it is in
+    while ray.cell != NONE {
+        let (at_level, Level { grid, info }) = levels.of_cell(ray.cell);
+        let at = grid.cell_of_id(ray.cell - info.first_cell);
         let later = ray.after > R::of(0.0);
+        let enters = if levels.are_several() { ray.cell == entry } else { ray.cells == 0 };
         let mut within = grid.way_through(at, o, d);
-        within[0] = if later || ray.cells == 0 { R::of(-NO_HIT) } else { within[0] };
+        within[0] = if later || enters { R::of(-NO_HIT) } else { within[0] };
         within[1] = if later { R::of(NO_HIT) } else { within[1] };
-        let [first, end] = lists.cells[grid.cell_id(at) as usize].map(|at| at as usize);
+        let range = lists.cells[ray.cell as usize];
+        let [first, end] = range.map(|at| at as usize);
         let mut start = first;
         while start < end {
             let stop = end.min(start / 4 * 4 + BATCH); // slots are read four at a time
@@ -42,11 +44,15 @@ pub fn grid_trace<R: Real>(
                 return;
             }
         }
-        let around = empty_around(lists.cells[grid.cell_id(at) as usize]);
+        let around = empty_around(range);
         let exits = grid.crossings(at, around, o, d);
         let ends = ray.hit_t <= nearest_crossing(exits);
-        next = if ends { None } else { grid.step(at, around, exits, o, d) };
-        ray.cells += u32::from(next.is_some());
+        let next = if ends { None } else { grid.step(at, around, exits, o, d) };
+        ray.cell = next.map_or(NONE, |next| info.first_cell + grid.cell_id(next));
+        if ray.cell == NONE {
+            entry = levels.enter_from(at_level + 1, o, d, [ray.after, ray.hit_t]);
+            ray.cell = entry;
+        }
+        ray.cells += u32::from(ray.cell != NONE);
     }
-    ray.cell = NONE;
 }

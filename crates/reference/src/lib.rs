@@ -6,6 +6,7 @@
 
 pub mod accumulate;
 pub mod albedo;
+mod around;
 mod batch;
 pub mod blend;
 pub mod camera_rays;
@@ -23,6 +24,7 @@ pub mod grid_trace;
 pub mod image;
 pub mod isosurface;
 pub mod least_squares;
+pub mod levels;
 pub mod light;
 pub mod media;
 pub mod optics;
@@ -39,17 +41,18 @@ pub mod volume;
 mod wave;
 
 use accumulate::accumulate;
+use albedo::slots_of;
 use bytemuck::Zeroable;
 use camera_rays::Ray;
 use disc_bin::{DiscLists, disc_bin};
 use fit_polynomials::Fitted;
-use grid::Grid;
 use grid_build::CellLists;
 use grid_trace::grid_trace;
-use kernels::layout::{FilmPixel, FitOutcome, GridInfo, VOLUME_LIGHTS};
+use kernels::layout::{FilmPixel, FitOutcome, VOLUME_LIGHTS};
+use levels::Levels;
 use plan::{Picture, Plan, Rays, Window};
 use point_light::point_lights;
-use points::{NeighborSearch, Rims, Watch, plan_grid};
+use points::{Grids, NeighborSearch, Rims, Watch, plan_grids};
 use polynomial::Polynomial;
 use rayon::prelude::*;
 use real::Real;
@@ -68,8 +71,8 @@ pub struct Reference<R> {
     pub polynomials: Vec<Polynomial<R>>,
     /// How each fit ended, by slot.
     pub outcomes: Vec<FitOutcome>,
-    /// Where the grid lies.
-    pub grid: GridInfo,
+    /// Where the grids lie.
+    pub grids: Grids,
     /// The points of each cell.
     pub lists: CellLists,
     /// The points of each cell, each once; empty where nothing is refined.
@@ -136,20 +139,20 @@ impl<R: Real> Reference<R> {
         let mut polynomials: Vec<Polynomial<R>> =
             fitted.into_iter().map(|fit| fit.polynomial).collect();
         watch.stage("building the grid", 1);
-        let grid = plan_grid(&cloud.points, &outcomes, plan.grid_resolution);
+        let grids = plan_grids(&cloud.points, &outcomes, plan.grid_resolution);
         let point_cells = if plan.refines() {
-            grid_build::list_points(&Grid::from(&grid), &polynomials, &cloud.order)
+            grid_build::list_points(&grids, &polynomials, &cloud.order)
         } else {
             PointCells::default()
         };
         for clip in rims.clips(&cloud.points, &outcomes) {
             rim::clip_ball(&mut polynomials[clip.slot as usize], &clip);
         }
-        let lists = grid_build::build_grid(&grid, &polynomials, &cloud.order);
+        let lists = grid_build::build_grids(&grids, &polynomials, &cloud.order);
         polynomials.extend(plan.volumes.stand_ins().iter().map(Polynomial::from));
         watch.done(1);
         let visible = Vec::new();
-        let mut reference = Self { polynomials, outcomes, grid, lists, point_cells, visible };
+        let mut reference = Self { polynomials, outcomes, grids, lists, point_cells, visible };
         reference.visible = point_lights(&reference, plan);
         Some(reference)
     }
@@ -207,7 +210,7 @@ impl<R: Real> Reference<R> {
     /// they are not too many.
     #[must_use]
     pub fn bin_discs(&self, plan: &Plan, tile: &Window) -> Option<DiscLists> {
-        let params = plan.discs_of(tile, &self.grid);
+        let params = plan.discs_of(tile, &self.grids);
         plan.by_discs(tile).then(|| disc_bin(&params, &self.polynomials)).flatten()
     }
 
@@ -221,10 +224,10 @@ impl<R: Real> Reference<R> {
         sample: u32,
         discs: Option<&DiscLists>,
     ) -> (Vec<FilmPixel>, Rays) {
-        let grid = Grid::<R>::from(&self.grid);
+        let levels = Levels::<R>::from(&self.grids);
         let (camera, params) = (plan.camera_of(window, sample), plan.wave_of(window, sample));
         let albedos = albedo::Albedos {
-            grid: &grid,
+            levels: &levels,
             lists: &self.lists,
             polynomials: &self.polynomials,
             objects: &plan.objects,
@@ -239,14 +242,14 @@ impl<R: Real> Reference<R> {
                 let mut trace = PixelTrace {
                     reference: self,
                     plan,
-                    grid: &grid,
+                    levels: &levels,
                     params: &params,
                     albedos: &albedos,
                     pixel: in_picture,
                     film: FilmPixel::zeroed(),
                     rays: Rays { camera: 1, ..Rays::default() },
                 };
-                let ray = camera_rays::camera_ray(&camera, &plan.filter, &grid, pixel);
+                let ray = camera_rays::camera_ray(&camera, &plan.filter, &levels, pixel);
                 trace.run(ray, discs);
                 (trace.film, trace.rays)
             })
@@ -259,11 +262,11 @@ impl<R: Real> Reference<R> {
     fn settle(
         &self,
         plan: &Plan,
-        grid: &Grid<R>,
+        levels: &Levels<R>,
         ray: &mut Ray<R>,
     ) -> (Option<(Hit<R>, u32)>, u32) {
         let surroundings = Surroundings {
-            grid,
+            levels,
             polynomials: &self.polynomials,
             points: &plan.cloud.points,
             outcomes: &self.outcomes,
@@ -279,7 +282,8 @@ impl<R: Real> Reference<R> {
                 if info.blends != 0 {
                     let (x, n) = (hit.position, hit.normal);
                     let (lists, polynomials) = (&self.lists, &self.polynomials);
-                    let blended = blend::blended_normal(grid, lists, polynomials, x, n, object);
+                    let blended =
+                        blend::blended_normal(levels, lists, polynomials, x, n, slots_of(info));
                     if blended.dot(ray.direction) < R::of(0.0) {
                         hit.normal = blended; // at an outline it may look away
                     }
@@ -290,8 +294,8 @@ impl<R: Real> Reference<R> {
                 Refined::Accepted(hit, more) => return (Some((hit, object)), iterations + more),
                 Refined::Rejected(more) => {
                     iterations += more;
-                    refine::resume(ray, grid);
-                    grid_trace(ray, grid, &self.lists, &self.polynomials, false);
+                    refine::resume(ray, levels);
+                    grid_trace(ray, levels, &self.lists, &self.polynomials, false);
                 }
             }
         }

@@ -2,9 +2,9 @@
 
 use crate::Reference;
 use crate::camera_rays::Ray;
-use crate::grid::Grid;
 use crate::grid_trace::grid_trace;
 use crate::isosurface::blocks;
+use crate::levels::Levels;
 use crate::light::sample_light;
 use crate::media::Media;
 use crate::real::{Real, V3};
@@ -22,7 +22,7 @@ pub fn point_lights<R: Real>(
     if !volumes.any_lit() {
         return Vec::new();
     }
-    let grid = Grid::<R>::from(&reference.grid);
+    let levels = Levels::<R>::from(&reference.grids);
     let mut visible = vec![[R::of(0.0); VOLUME_LIGHTS as usize]; volumes.points.len()];
     for (info, range) in volumes.point_ranges().filter(|(info, _)| info.shading != VOLUME_EMITS) {
         let media = Media::of(&[info.object]);
@@ -34,10 +34,10 @@ pub fn point_lights<R: Real>(
                 }
                 for (of_light, light) in of.iter_mut().zip(&plan.lights) {
                     let sample = sample_light(light, x, [R::of(0.5); 2]);
-                    let mut ray = Ray::new(x, sample.towards, &grid, NONE);
+                    let mut ray = Ray::new(x, sample.towards, &levels, NONE);
                     ray.passed = info.object;
                     ray.hit_t = sample.distance;
-                    grid_trace(&mut ray, &grid, &reference.lists, &reference.polynomials, true);
+                    grid_trace(&mut ray, &levels, &reference.lists, &reference.polynomials, true);
                     if ray.hit_slot == NONE && !blocks(&ray, ray.hit_t, volumes) {
                         *of_light = march(&ray, ray.hit_t, &media, volumes, &plan.objects, None)
                             .transmittance;

@@ -1,18 +1,20 @@
 //! Twin of `refine` and `resume`: a stored hit's way to the point set surface (\[T\] §4, after Adamson
 //! and Alexa; method, section 2).
 
+use crate::albedo::slots_of;
 use crate::camera_rays::Ray;
 use crate::eigen::eigen_symmetric;
 use crate::fit::{COLLINEAR, Frame, fit_coefficients};
-use crate::grid::{Ball, Grid};
+use crate::grid::Ball;
 use crate::least_squares::NormalEquations;
+use crate::levels::{Level, Levels};
 use crate::polynomial::Polynomial;
 use crate::real::{NO_HIT, Real, V3};
 use crate::surface_hit::Hit;
 use kernels::layout::{FIT_NO_SURFACE, FitOutcome, NONE, ObjectInfo, Point};
 
 const REACH: f64 = 3.0;
-const MAX_ROWS: u32 = 1024;
+const MAX_ROWS: u64 = 1024;
 const MAX_LISTED: u32 = 2048;
 
 /// The points of each cell, each point once.
@@ -27,15 +29,15 @@ pub struct PointCells {
 /// What refinement reads.
 #[derive(Debug, Clone, Copy)]
 pub struct Surroundings<'a, R> {
-    /// The grid of `cells`.
-    pub grid: &'a Grid<R>,
+    /// The grids of `cells`.
+    pub levels: &'a Levels<R>,
     /// By slot.
     pub polynomials: &'a [Polynomial<R>],
     /// By slot: where the points are. (Balls at rims have other centres.)
     pub points: &'a [Point],
     /// By slot.
     pub outcomes: &'a [FitOutcome],
-    /// The points of each cell.
+    /// The points of each cell of each grid.
     pub cells: &'a PointCells,
     /// By object.
     pub objects: &'a [ObjectInfo],
@@ -51,17 +53,28 @@ pub enum Refined<R> {
 }
 
 impl<R: Real> Surroundings<'_, R> {
-    /// Slots of the rows of cells around x; `None` where there are too many.
-    fn around(&self, x: V3<R>, radius: R) -> Option<Vec<u32>> {
-        let [low, high] = self.grid.cells_around(&Ball::exact(x, radius));
-        let (height, depth) = (high[1] - low[1] + 1, high[2] - low[2] + 1);
-        if height.checked_mul(depth).is_none_or(|rows| rows > MAX_ROWS) {
+    /// Slots of the rows of cells around x, where the object's points are listed; `None` where there are too many.
+    fn around(&self, x: V3<R>, radius: R, object: u32) -> Option<Vec<u32>> {
+        let ball = Ball::exact(x, radius);
+        let boxes: Vec<(&Level<R>, [[u32; 3]; 2])> = self
+            .levels
+            .listing(slots_of(&self.objects[object as usize]))
+            .map(|level| (level, level.grid.cells_around(&ball)))
+            .collect();
+        let count = |[low, high]: [[u32; 3]; 2]| (high[1] - low[1] + 1) * (high[2] - low[2] + 1);
+        if boxes.iter().map(|&(_, around)| u64::from(count(around))).sum::<u64>() > MAX_ROWS {
             return None;
         }
-        let rows = (0..height * depth).map(|row| {
-            let cell = |x: u32| [x, low[1] + row % height, low[2] + row / height];
-            let offset = |cell: u32| self.cells.offsets[cell as usize] as usize;
-            offset(self.grid.cell_id(cell(low[0])))..offset(self.grid.cell_id(cell(high[0])) + 1)
+        let rows = boxes.iter().flat_map(|&(level, [low, high])| {
+            (0..count([low, high])).map(move |row| {
+                let height = high[1] - low[1] + 1;
+                let offset = |x: u32, past: u32| {
+                    let cell = [x, low[1] + row % height, low[2] + row / height];
+                    let at = level.info.first_offset + level.grid.cell_id(cell) + past;
+                    self.cells.offsets[at as usize] as usize
+                };
+                offset(low[0], 0)..offset(high[0], 1)
+            })
         });
         let listed: usize = rows.clone().map(|row| row.len()).sum();
         (listed <= MAX_LISTED as usize)
@@ -144,10 +157,12 @@ impl<R: Real> Surroundings<'_, R> {
         while iterations < info.max_iterations {
             let from_stored = hit.position - stored.center;
             let reach = from_stored.dot(from_stored).sqrt() + moved;
-            let Some(near) = self.around(hit.position, reach) else { break };
+            let Some(near) = self.around(hit.position, reach, stored.object) else { break };
             let nearest = self.nearest(&near, hit.position, ray.hit_slot, clipped) as usize;
             let h = R::of_f32(self.outcomes[nearest].feature_size);
-            let Some(slots) = self.around(hit.position, R::of(REACH) * h) else { break };
+            let Some(slots) = self.around(hit.position, R::of(REACH) * h, stored.object) else {
+                break;
+            };
             let (mut p, kind) = self.fit_at(&slots, hit.position, h, stored.object);
             p.trust = R::of_f32(self.outcomes[nearest].trust);
             iterations += 1;
@@ -173,9 +188,13 @@ impl<R: Real> Surroundings<'_, R> {
 }
 
 /// Sends a ray whose hit was refined away on to the next.
-pub fn resume<R: Real>(ray: &mut Ray<R>, grid: &Grid<R>) {
+pub fn resume<R: Real>(ray: &mut Ray<R>, levels: &Levels<R>) {
     ray.after = ray.hit_t;
     ray.hit_t = R::of(NO_HIT);
     ray.hit_slot = NONE;
-    ray.cell = grid.cell_id(grid.cell_of(ray.origin + ray.direction.times(ray.after)));
+    let (o, d) = (ray.origin, ray.direction);
+    ray.cell = match levels.are_several() {
+        true => levels.enter_from(0, o, d, [ray.after, R::of(NO_HIT)]),
+        false => levels.of_cell(0).1.cell_around(o + d.times(ray.after)),
+    };
 }

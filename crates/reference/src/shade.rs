@@ -1,7 +1,7 @@
 //! Twin of `shadow_rays` and `shade`: Lambert's law at a diffuse hit, with the lights that reach it.
 
 use crate::camera_rays::Ray;
-use crate::grid::Grid;
+use crate::levels::Levels;
 use crate::light::sample_light;
 use crate::real::{Real, V3};
 use crate::sampler::sample_2d;
@@ -15,14 +15,14 @@ pub fn shadow_ray<R: Real>(
     u: [R; 2],
     hit: &Hit<R>,
     slot: u32,
-    grid: &Grid<R>,
+    levels: &Levels<R>,
 ) -> Option<(Ray<R>, V3<R>)> {
     let zero = R::of(0.0);
     let sample = sample_light(light, hit.position, u);
     let arriving = sample.arriving.times(hit.normal.dot(sample.towards).max(zero));
     let arrives = arriving.0.iter().any(|&channel| channel > zero);
     arrives.then(|| {
-        let mut ray = Ray::new(hit.position, sample.towards, grid, slot);
+        let mut ray = Ray::new(hit.position, sample.towards, levels, slot);
         ray.hit_t = sample.distance;
         (ray, arriving)
     })

@@ -9,9 +9,9 @@ use crate::camera_rays::Ray;
 use crate::disc_bin::DiscLists;
 use crate::disc_trace::disc_trace;
 use crate::environment::background_at;
-use crate::grid::Grid;
 use crate::grid_trace::grid_trace;
 use crate::isosurface::{blocks, isosurface};
+use crate::levels::Levels;
 use crate::media::{Media, ior_of, transmittance};
 use crate::optics::{reflected, refraction};
 use crate::real::{NO_HIT, Real, V3};
@@ -44,7 +44,7 @@ struct Path<R> {
 pub(crate) struct PixelTrace<'a, R> {
     pub reference: &'a Reference<R>,
     pub plan: &'a Plan,
-    pub grid: &'a Grid<R>,
+    pub levels: &'a Levels<R>,
     pub params: &'a WaveParams,
     pub albedos: &'a Albedos<'a, R>,
     /// In the full image.
@@ -76,7 +76,7 @@ impl<R: Real> PixelTrace<'_, R> {
                 }
                 None => self.trace(&mut ray, false),
             }
-            let (mut hit, mut iterations) = self.reference.settle(self.plan, self.grid, &mut ray);
+            let (mut hit, mut iterations) = self.reference.settle(self.plan, self.levels, &mut ray);
             let end = hit.as_ref().map_or(R::of(NO_HIT), |(hit, _)| hit.t);
             if let Some((nearer, slot)) = isosurface(&ray, end, &path.media, &self.plan.volumes) {
                 hit = Some((nearer, self.reference.polynomials[slot as usize].object));
@@ -91,7 +91,7 @@ impl<R: Real> PixelTrace<'_, R> {
 
     fn trace(&self, ray: &mut Ray<R>, any_hit: bool) {
         let Reference { lists, polynomials, .. } = self.reference;
-        grid_trace(ray, self.grid, lists, polynomials, any_hit);
+        grid_trace(ray, self.levels, lists, polynomials, any_hit);
     }
 
     /// Counts, and what the first surface is.
@@ -207,7 +207,7 @@ impl<R: Real> PixelTrace<'_, R> {
         let mut irradiance = V3::splat(R::of(0.0));
         for (i, light) in (0..).zip(&self.plan.lights) {
             let u = place_on_light(self.params, self.pixel, i);
-            let Some((mut ray, arriving)) = shadow_ray(light, u, hit, slot, self.grid) else {
+            let Some((mut ray, arriving)) = shadow_ray(light, u, hit, slot, self.levels) else {
                 continue;
             };
             self.rays.shadow += 1;
@@ -293,7 +293,7 @@ impl<R: Real> PixelTrace<'_, R> {
                 emitted: path.emitted,
                 coverage: path.coverage,
             };
-            rays.push((Ray::new(hit.position, direction, self.grid, ray.hit_slot), next));
+            rays.push((Ray::new(hit.position, direction, self.levels, ray.hit_slot), next));
         }
     }
 }

@@ -83,7 +83,7 @@ impl Discs {
         surfaces: &Surfaces,
         timed: &mut dyn FnMut(&Timings),
     ) -> Result<Option<&DiscLists>, GpuError> {
-        let counted = plan.discs_of(tile, &surfaces.grid);
+        let counted = plan.discs_of(tile, &surfaces.grids);
         let pair_count = self.count_pairs(rec, &surfaces.polynomials, &counted, timed)?;
         if pair_count > MAX_DISC_PAIRS {
             return Ok(None);

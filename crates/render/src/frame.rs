@@ -22,11 +22,11 @@ use crate::volumes::VolumeBuffers;
 use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder, Timings};
 use kernels::layout::{
-    FilmPixel, Hit, Path, Polynomial, SCENE_SKIPS, WAVE_SHARES_PATH, WaveParams,
+    FilmPixel, Hit, Path, Polynomial, SCENE_LEVELS, SCENE_SKIPS, WAVE_SHARES_PATH, WaveParams,
 };
 use plan::{MAX_DISC_PAIRS, Picture, Plan, Rays, Window, camera_wave};
+use points::Watch;
 use points::device::Surfaces;
-use points::{Watch, skips_cells};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -234,8 +234,9 @@ impl Renderer {
         let longest = records.max(lists).max(u64::from(rays) * TEXELS_A_RAY);
         let form = RayLoop::of(plan.ray_loop, device, longest);
         let live_rays = || Buffer::new(device, "list of live rays", u64::from(rays) * 4);
-        let skips = if skips_cells(&surfaces.grid) { SCENE_SKIPS } else { 0 };
-        let scene = plan.scene_bits() | skips;
+        let skips = if surfaces.grids.skip_cells() { SCENE_SKIPS } else { 0 };
+        let levels = if surfaces.grids.are_several() { SCENE_LEVELS } else { 0 };
+        let scene = plan.scene_bits() | skips | levels;
         let shadows = if plan.lights.is_empty() { 1 } else { rays };
         Ok(Self {
             surfaces,
@@ -370,7 +371,7 @@ impl Renderer {
 
     fn start_rays(&mut self, plan: &Plan, tile: &Window, sample: u32) {
         let io = CameraRaysIo {
-            grid_info: &self.surfaces.grid_info,
+            grid_levels: &self.surfaces.grid_levels,
             filter: &self.filter,
             start: &self.camera_path,
             state: &self.state.current,
@@ -406,7 +407,7 @@ impl Renderer {
             wave: &self.wave,
             live: &self.live,
         };
-        let traced = plan.camera_trace_of(tile, &self.surfaces.grid, MOST);
+        let traced = plan.camera_trace_of(tile, &self.surfaces.grids, MOST);
         self.recorder.fill(&self.live, 0, 4, 0);
         record_no_marks(&mut self.recorder, &self.wave, plan, params);
         self.passes.camera_trace.record(&mut self.recorder, io, &traced);
@@ -517,7 +518,7 @@ impl Renderer {
         for light in 0..params.light_count {
             let io = ShadowRaysIo {
                 shadows: &self.shadows,
-                grid_info: &self.surfaces.grid_info,
+                grid_levels: &self.surfaces.grid_levels,
                 lit_hits: self.wave.lit_hits(),
                 lights: &self.lights,
                 film: &self.film,

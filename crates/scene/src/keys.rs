@@ -293,7 +293,7 @@ pub(crate) static RENDER: Table = Table {
             "grid_resolution",
             count(0, 1024, "cells"),
             Value("0"),
-            "Cells along the grid's longest axis. 0 chooses from the points.",
+            "Cells along the longest axis of one grid. 0 chooses grids from the points.",
         ),
         key(
             "primary",

@@ -208,10 +208,12 @@ pub(crate) fn what_is_missing(
 
 /// As TOML, so that overrides and checks work on it as on any scene.
 fn point_file_document(points: &Path, up: Up) -> Node {
-    // Turned from y up to z up by a quarter turn about x: (x, y, z) to (x, -z, y).
+    // Turned from y up by a quarter turn about x, (x, y, z) to (x, -z, y), or by half a turn, to
+    // (x, -y, -z).
     let [key, fill] = match up {
         Up::Y => ["[-0.5, -1.0, -0.6]", "[0.8, -0.1, -0.6]"],
         Up::Z => ["[-0.5, 0.6, -1.0]", "[0.8, 0.6, -0.1]"],
+        Up::MinusY => ["[-0.5, 1.0, 0.6]", "[0.8, 0.1, 0.6]"],
     };
     let text = format!(
         "{{ background = {{ color = [0.18, 0.18, 0.18] }}, lights = [\

@@ -511,4 +511,6 @@ pub enum Up {
     Y,
     /// +z, as in most surveys.
     Z,
+    /// -y, as in what a depth camera sees: x to the right, y down, z forward.
+    MinusY,
 }

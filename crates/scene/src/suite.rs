@@ -10,7 +10,7 @@ use crate::suite_keys::{ROWS, SUITE};
 use std::path::{Path, PathBuf};
 
 /// Names of [`Shape`]s, in their order.
-pub(crate) const SHAPES: [&str; 2] = ["sphere", "torus"];
+pub(crate) const SHAPES: [&str; 3] = ["sphere", "torus", "hills"];
 
 /// A file of benchmarks, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,6 +49,8 @@ pub enum Shape {
     Sphere,
     /// About the y axis, with radii 1 and 0.4.
     Torus,
+    /// Over a square of side 1 in the plane y = 0, level where they meet the origin.
+    Hills,
 }
 
 impl Suite {
@@ -99,7 +101,8 @@ fn row_of(row: &Reader<'_>, folder: &Path) -> SuiteRow {
         cells_per_pass: list(row, "cells_per_pass", count),
         generate: text("generate").map(|name| match name.as_str() {
             "sphere" => Shape::Sphere,
-            _ => Shape::Torus,
+            "torus" => Shape::Torus,
+            _ => Shape::Hills,
         }),
         point_counts: list(row, "point_counts", count),
         paper_ms: row.written("paper_ms").map(|_| row.number("paper_ms")),
@@ -172,7 +175,8 @@ point_counts = [1000, 2000]
         assert_eq!(suite, Suite { about: "both kinds".into(), rows: vec![ball, tori] });
         assert_eq!(
             SHAPES,
-            [Shape::Sphere, Shape::Torus].map(|shape| format!("{shape:?}").to_lowercase())
+            [Shape::Sphere, Shape::Torus, Shape::Hills]
+                .map(|shape| format!("{shape:?}").to_lowercase())
         );
     }
 

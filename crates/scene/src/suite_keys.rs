@@ -64,7 +64,8 @@ pub(crate) static ROWS: Table = Table {
             Kind::Choice(&SHAPES),
             Words("the scene's own points", "\"torus\""),
             "Even points to be made instead of the first object's: on a sphere of radius 1 about the \
-             origin, or on a torus about the y axis with radii 1 and 0.4.",
+             origin, on a torus about the y axis with radii 1 and 0.4, or on hills over a square of side 1 around the \
+             origin, where they have no height.",
         ),
         key(
             "point_counts",

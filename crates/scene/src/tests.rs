@@ -1035,6 +1035,8 @@ fn up_turns_the_lights_of_a_point_file() {
     let turn = Transform { rotate: [90.0, 0.0, 0.0], ..Transform::IDENTITY };
     let turned: Vec<_> = directions(Up::Y).into_iter().map(|d| turn.rotate(d)).collect();
     assert_eq!(directions(Up::Z), turned);
+    let over: Vec<_> = directions(Up::Y).into_iter().map(|[x, y, z]| [x, -y, -z]).collect();
+    assert_eq!(directions(Up::MinusY), over);
     assert!(directions(Up::Y)[0][1] < 0.0);
 }
 

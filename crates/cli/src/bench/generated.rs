@@ -1,4 +1,4 @@
-//! Even points on a closed surface, as many as asked for, in a temporary file.
+//! Even points on a surface, as many as asked for, in a temporary file.
 //!
 //! Point `i` of `n` lies at the golden ratio's multiple around, and at the share `(i + ½) / n` of the
 //! area across: a lattice without clusters or gaps, for any `n`, and the same on every machine.
@@ -74,7 +74,16 @@ fn point(shape: Shape, index: u32, count: u32) -> [f64; 3] {
             let radius = 1.0 + TUBE * out;
             [radius * cos, TUBE * up, radius * sin]
         }
+        Shape::Hills => {
+            let [x, z] = [share - 0.5, (GOLDEN * f64::from(index)).fract() - 0.5];
+            [x, hills(x, z), z]
+        }
     }
+}
+
+/// Of no height and no slope at the origin.
+fn hills(x: f64, z: f64) -> f64 {
+    0.02 * (1.0 - (11.0 * x).cos() * (7.0 * z).cos())
 }
 
 /// The angle around the tube that has this share of the torus's area below it. The area up to v goes
@@ -99,12 +108,16 @@ mod tests {
     #[test]
     fn points_are_even_and_on_the_surface_for_any_count() {
         for count in [1_000, 31_623] {
-            for (shape, area) in [(Shape::Sphere, 2.0 * TAU), (Shape::Torus, TAU * TAU * TUBE)] {
+            // The hills are a little wider than their square.
+            let shapes =
+                [(Shape::Sphere, 2.0 * TAU), (Shape::Torus, TAU * TAU * TUBE), (Shape::Hills, 1.0)];
+            for (shape, area) in shapes {
                 let points: Vec<_> = (0..count).map(|i| point(shape, i, count)).collect();
                 for [x, y, z] in &points {
                     let off = match shape {
                         Shape::Sphere => x * x + y * y + z * z - 1.0,
                         Shape::Torus => (x.hypot(*z) - 1.0).hypot(*y) - TUBE,
+                        Shape::Hills => y - hills(*x, *z),
                     };
                     assert!(off.abs() < 1e-12, "{shape:?}: {off}");
                 }

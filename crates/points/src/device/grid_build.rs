@@ -1,4 +1,4 @@
-//! The uniform grid: count, scan, emit, sort, ranges (\[T\] §5).
+//! The grids: count, scan, emit, sort, ranges (\[T\] §5).
 //!
 //! Pairs of cell and point are sorted slab by slab, some layers of cells along z at a time, so that no buffer
 //! but the finished list grows with the scene. Slabs follow each other as their cells do: any number of them
@@ -14,19 +14,21 @@ use crate::BALL_MARGIN;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Texel};
 use kernels::layout::{
     GRID_CELLS, GRID_INFO, GRID_KEYS, GRID_LARGE, GRID_OFFSETS, GRID_ORDER, GRID_POLYNOMIALS,
-    GRID_SLOTS, GridInfo, GridParams, ListedPoint, OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT,
+    GRID_SLOTS, GridLevel, GridParams, ListedPoint, OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT,
     OFFSETS_POINTS, OFFSETS_POLYNOMIALS, OFFSETS_SLOTS,
 };
 use kernels::spirv;
+use std::borrow::Cow;
 use std::sync::Arc;
 
-/// What the build works on.
+/// What the build of one grid works on.
 pub(crate) struct GridBuildIo<'a> {
-    pub grid: &'a GridInfo,
-    pub grid_info: &'a Buffer,
+    pub level: GridLevel,
+    /// Of it alone.
+    pub grid_info: Buffer,
     pub polynomials: &'a Buffer,
-    /// Slots by ordinal.
-    pub order: &'a [u32],
+    /// Its slots by ordinal.
+    pub order: Cow<'a, [u32]>,
     /// Whether any ball may meet so many cells that its pairs are emitted one by one.
     pub any_large: bool,
 }
@@ -136,44 +138,49 @@ impl GridBuild {
         Kernel::new(device, name, module, bindings, size_of::<GridParams>())
     }
 
-    /// Lists the points whose trust ball meets each cell, in the order of `order` (slots by ordinal).
-    pub fn run(&self, rec: &mut Work, io: &GridBuildIo<'_>) -> Result<GridLists, GpuError> {
+    /// Lists the points whose trust ball meets each cell of each grid, in the order of `order` (slots by ordinal).
+    pub fn run(&self, rec: &mut Work, levels: &[GridBuildIo<'_>]) -> Result<GridLists, GpuError> {
         let device = &self.device;
-        let bytes = u64::from(io.grid.cell_count()) * 8;
+        let last = levels.last().map_or(0, |io| io.level.first_cell + io.level.grid.cell_count());
+        let bytes = u64::from(last) * 8;
         let cells = Buffer::paged(device, "cells", bytes)?;
         rec.fill(&cells, 0, bytes, 0);
-        let counting = self.counting(io)?;
-        let whole = self.count(rec, io, &counting, [0, io.grid.resolution[2]], BALL_MARGIN)?;
-        if whole.is_sorted_at_once() {
-            if whole.pairs == 0 {
-                rec.submit()?;
-                return Ok(GridLists { cells, slots: Buffer::new(device, "cell slots", 16)? });
-            }
-            let pairs = self.sorted_pairs(rec, io, &counting, &whole, BALL_MARGIN)?;
-            self.record_ranges(rec, io, &pairs, &whole, 0, &cells);
+        let counted = self.counted(rec, levels, BALL_MARGIN)?;
+        let pairs: u32 = counted.iter().map(|(_, whole)| whole.pairs).sum();
+        if pairs == 0 {
+            rec.submit()?;
+            return Ok(GridLists { cells, slots: Buffer::new(device, "cell slots", 16)? });
+        }
+        if let ([io], [(counting, whole)]) = (levels, &counted[..])
+            && whole.is_sorted_at_once()
+        {
+            let pairs = self.sorted_pairs(rec, io, counting, whole, BALL_MARGIN)?;
+            self.record_ranges(rec, io, &pairs, whole, 0, &cells);
             rec.submit()?;
             return Ok(GridLists { cells, slots: pairs.slots });
         }
-        let slots =
-            Buffer::paged(device, "cell slots", u64::from(whole.pairs).next_multiple_of(4) * 4)?;
+        let slots = Buffer::paged(device, "cell slots", u64::from(pairs).next_multiple_of(4) * 4)?;
         // Slots are read four at a time, also behind the last.
-        let end = u64::from(whole.pairs) * 4;
+        let end = u64::from(pairs) * 4;
         if slots.bytes() > end {
             rec.fill(&slots, end, slots.bytes() - end, 0);
         }
         let mut first_pair = 0;
-        let mut left = whole.parts();
-        while let Some(layers) = left.pop() {
-            let slab = self.count(rec, io, &counting, layers, BALL_MARGIN)?;
-            if !slab.is_sorted_at_once() {
-                left.extend(slab.parts());
-            } else if slab.pairs > 0 {
-                let pairs = self.sorted_pairs(rec, io, &counting, &slab, BALL_MARGIN)?;
-                self.record_ranges(rec, io, &pairs, &slab, first_pair, &cells);
-                let bytes = u64::from(slab.pairs) * 4;
-                rec.copy(&pairs.slots, 0, &slots, u64::from(first_pair) * 4, bytes);
-                rec.submit()?;
-                first_pair += slab.pairs;
+        for (io, (counting, whole)) in levels.iter().zip(&counted) {
+            let mut left =
+                if whole.is_sorted_at_once() { vec![whole.layers()] } else { whole.parts() };
+            while let Some(layers) = left.pop() {
+                let slab = self.count(rec, io, counting, layers, BALL_MARGIN)?;
+                if !slab.is_sorted_at_once() {
+                    left.extend(slab.parts());
+                } else if slab.pairs > 0 {
+                    let pairs = self.sorted_pairs(rec, io, counting, &slab, BALL_MARGIN)?;
+                    self.record_ranges(rec, io, &pairs, &slab, first_pair, &cells);
+                    let bytes = u64::from(slab.pairs) * 4;
+                    rec.copy(&pairs.slots, 0, &slots, u64::from(first_pair) * 4, bytes);
+                    rec.submit()?;
+                    first_pair += slab.pairs;
+                }
             }
         }
         Ok(GridLists { cells, slots })
@@ -183,42 +190,70 @@ impl GridBuild {
     pub fn list_points(
         &self,
         rec: &mut Work,
-        io: &GridBuildIo<'_>,
+        levels: &[GridBuildIo<'_>],
     ) -> Result<Option<PointCells>, GpuError> {
         let device = &self.device;
-        let counting = self.counting(io)?;
-        let layers = [0, io.grid.resolution[2]];
-        let whole = self.count(rec, io, &counting, layers, 0.0)?;
-        if whole.pairs == 0 {
+        let counted = self.counted(rec, levels, 0.0)?;
+        let listed: u32 = counted.iter().map(|(_, whole)| whole.pairs).sum();
+        if listed == 0 {
             return Ok(None);
         }
-        let pairs = self.sorted_pairs(rec, io, &counting, &whole, 0.0)?;
-        let params = whole.params(io, 0.0);
-        let entries = io.grid.cell_count() + 1;
-        let offsets = Buffer::new(device, "point cell offsets", u64::from(entries) * 4)?;
-        rec.pass("cell_offsets", &self.offsets)
-            .buffer(OFFSETS_INFO, io.grid_info)
-            .buffer(OFFSETS_KEYS, &pairs.keys)
-            .buffer(OFFSETS_OUT, &offsets)
-            .push(&params)
-            .dispatch(line(entries));
-        let bytes = u64::from(whole.pairs) * size_of::<ListedPoint>() as u64;
+        let entries = |level: &GridLevel| u64::from(level.grid.cell_count()) + 1;
+        let last =
+            levels.last().map_or(0, |io| u64::from(io.level.first_offset) + entries(&io.level));
+        let offsets = Buffer::new(device, "point cell offsets", last * 4)?;
+        let bytes = u64::from(listed) * size_of::<ListedPoint>() as u64;
         let points = Buffer::new(device, "listed points", bytes)?;
-        rec.pass("list_points", &self.list_points)
-            .buffer(OFFSETS_SLOTS, &pairs.slots)
-            .buffer(OFFSETS_POLYNOMIALS, io.polynomials)
-            .buffer(OFFSETS_POINTS, &points)
-            .push(&params)
-            .dispatch(line(whole.pairs));
-        rec.submit()?;
+        let mut first_pair = 0;
+        for (io, (counting, whole)) in levels.iter().zip(&counted) {
+            let pairs = self.sorted_pairs(rec, io, counting, whole, 0.0)?;
+            let params = GridParams { first_pair, ..whole.params(io, 0.0) };
+            let entries = entries(&io.level);
+            rec.pass("cell_offsets", &self.offsets)
+                .buffer(OFFSETS_INFO, &io.grid_info)
+                .buffer(OFFSETS_KEYS, &pairs.keys)
+                .buffer_part(
+                    OFFSETS_OUT,
+                    &offsets,
+                    u64::from(io.level.first_offset) * 4,
+                    entries * 4,
+                )
+                .push(&params)
+                .dispatch(line(entries as u32));
+            rec.pass("list_points", &self.list_points)
+                .buffer(OFFSETS_SLOTS, &pairs.slots)
+                .buffer(OFFSETS_POLYNOMIALS, io.polynomials)
+                .buffer(OFFSETS_POINTS, &points)
+                .push(&params)
+                .dispatch(line(whole.pairs));
+            rec.submit()?;
+            first_pair += whole.pairs;
+        }
         Ok(Some(PointCells { offsets, points }))
+    }
+
+    /// The pairs of each grid, counted.
+    fn counted(
+        &self,
+        rec: &mut Work,
+        levels: &[GridBuildIo<'_>],
+        ball_scale: f32,
+    ) -> Result<Vec<(Counting, Slab)>, GpuError> {
+        let mut counted = Vec::new();
+        for io in levels {
+            let counting = self.counting(io)?;
+            let layers = [0, io.level.grid.resolution[2]];
+            let whole = self.count(rec, io, &counting, layers, ball_scale)?;
+            counted.push((counting, whole));
+        }
+        Ok(counted)
     }
 
     fn counting(&self, io: &GridBuildIo<'_>) -> Result<Counting, GpuError> {
         let device = &self.device;
         let bytes = (io.order.len() as u64 + 1) * 4;
         Ok(Counting {
-            order: Buffer::from_slice(device, "point order", io.order)?,
+            order: Buffer::from_slice(device, "point order", &io.order)?,
             offsets: Buffer::new(device, "pair offsets", bytes)?,
             large_offsets: Buffer::new(
                 device,
@@ -247,7 +282,7 @@ impl GridBuild {
             rec.fill(large_offsets, end, 4, 0);
         }
         rec.pass("grid_count", &self.count)
-            .buffer(GRID_INFO, io.grid_info)
+            .buffer(GRID_INFO, &io.grid_info)
             .buffer(GRID_POLYNOMIALS, io.polynomials)
             .buffer(GRID_ORDER, order)
             .buffer(GRID_OFFSETS, offsets)
@@ -283,7 +318,7 @@ impl GridBuild {
         let mut space = SortSpace::new(device, slab.pairs)?;
         let params = slab.params(io, ball_scale);
         rec.pass("grid_emit", &self.emit)
-            .buffer(GRID_INFO, io.grid_info)
+            .buffer(GRID_INFO, &io.grid_info)
             .buffer(GRID_POLYNOMIALS, io.polynomials)
             .buffer(GRID_ORDER, &counting.order)
             .buffer(GRID_OFFSETS, &counting.offsets)
@@ -293,7 +328,7 @@ impl GridBuild {
             .dispatch(line(params.point_count));
         if slab.large_pairs > 0 {
             rec.pass("grid_emit_large", &self.emit_large)
-                .buffer(GRID_INFO, io.grid_info)
+                .buffer(GRID_INFO, &io.grid_info)
                 .buffer(GRID_POLYNOMIALS, io.polynomials)
                 .buffer(GRID_ORDER, &counting.order)
                 .buffer(GRID_OFFSETS, &counting.offsets)
@@ -303,7 +338,7 @@ impl GridBuild {
                 .push(&GridParams { pair_count: slab.large_pairs, ..params })
                 .dispatch(line(slab.large_pairs));
         }
-        let [x, y, _] = io.grid.resolution;
+        let [x, y, _] = io.level.grid.resolution;
         let largest = x * y * (slab.end_layer - slab.first_layer);
         self.sort.record(rec, &self.scan, &mut pairs, &mut space, slab.pairs, largest);
         Ok(pairs)
@@ -318,10 +353,11 @@ impl GridBuild {
         first_pair: u32,
         cells: &Buffer,
     ) {
+        let first = u64::from(io.level.first_cell);
         rec.pass("grid_ranges", &self.ranges)
-            .buffer(GRID_INFO, io.grid_info)
+            .buffer(GRID_INFO, &io.grid_info)
             .buffer(GRID_KEYS, &pairs.keys)
-            .buffer(GRID_CELLS, cells)
+            .buffer_part(GRID_CELLS, cells, first * 8, u64::from(io.level.grid.cell_count()) * 8)
             .push(&GridParams { first_pair, ..slab.params(io, BALL_MARGIN) })
             .dispatch(line(slab.pairs));
     }
@@ -330,6 +366,10 @@ impl GridBuild {
 impl Slab {
     fn is_sorted_at_once(&self) -> bool {
         self.pairs <= SLAB_PAIRS || self.end_layer - self.first_layer == 1
+    }
+
+    fn layers(&self) -> [u32; 2] {
+        [self.first_layer, self.end_layer]
     }
 
     /// Its layers in parts that are likely to be small enough, the lowest last.

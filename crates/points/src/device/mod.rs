@@ -1,4 +1,4 @@
-//! Polynomials and the uniform grid, built as storage buffers of a device (\[T\] §4, §5).
+//! Polynomials and grids, built as storage buffers of a device (\[T\] §4, §5).
 //!
 //! Count, scan, stable scatter: the order in a cell is the order of (object, place in the file), so
 //! a render gives the same bytes from run to run. No float atomics, no atomic append.
@@ -18,11 +18,11 @@ pub use fitting::nearest_others;
 pub use scan::Scan;
 pub use sort::{Pairs, Sort, SortSpace};
 
-use crate::{Cloud, Watch, plan_grid, skips_cells};
+use crate::{Cloud, Grids, Watch, plan_grids};
 use fitting::{Fitted, fit_all};
 use gpu::{Buffer, Device, GpuError};
 use grid_build::{GridBuild, GridBuildIo};
-use kernels::layout::{FitOutcome, FitParams, GridInfo, LINE_ROW, Polynomial};
+use kernels::layout::{FitOutcome, FitParams, GridLevel, LINE_ROW, Polynomial};
 use std::sync::Arc;
 use work::Work;
 
@@ -35,11 +35,11 @@ pub struct Surfaces {
     pub outcomes: Vec<FitOutcome>,
     /// The same, for kernels, where hits are refined.
     pub outcome_buffer: Buffer,
-    /// Where the grid lies.
-    pub grid: GridInfo,
+    /// Where the grids lie.
+    pub grids: Grids,
     /// The same, for kernels.
-    pub grid_info: Buffer,
-    /// First and past-the-last entry of each cell in `slots`.
+    pub grid_levels: Buffer,
+    /// First and past-the-last entry in `slots` of each cell of each grid.
     pub cells: Buffer,
     /// Points, cell after cell.
     pub slots: Buffer,
@@ -126,7 +126,7 @@ impl Memory {
 }
 
 impl Surfaces {
-    /// Fits every point of the cloud and sorts the fits into a grid. `fits` has one entry an object;
+    /// Fits every point of the cloud and sorts the fits into grids. `fits` has one entry an object;
     /// `resolution` is the number of cells along the grid's longest axis, 0: chosen; `refines` also
     /// lists what refinement of hits reads. `stand_ins` come behind the polynomials of all points, and in
     /// no cell.
@@ -156,33 +156,39 @@ impl Surfaces {
             false => Buffer::new(device, "fit outcomes", size_of::<FitOutcome>() as u64)?,
         };
         watch.stage("building the grid", 1);
-        let grid = plan_grid(&cloud.points, &outcomes, resolution);
-        let grid_info = Buffer::from_slice(device, "grid info", &[grid])?;
+        let grids = plan_grids(&cloud.points, &outcomes, resolution);
         let texels = bytes / 16 <= u64::from(device.limits().max_texel_buffer_elements);
         let build = GridBuild::new(device, texels)?;
         let widest = outcomes.iter().map(|outcome| outcome.trust).fold(0.0, f32::max);
-        let io = GridBuildIo {
-            grid: &grid,
-            grid_info: &grid_info,
-            polynomials: &polynomials,
-            order: &cloud.order,
-            // Others are no wider than two cells, and touch four along each axis at most.
-            any_large: widest > 0.99 * grid.edge,
+        let io = |(at, level): (usize, &GridLevel)| -> Result<GridBuildIo<'_>, GpuError> {
+            Ok(GridBuildIo {
+                level: *level,
+                grid_info: Buffer::from_slice(device, "grid info", &[level.grid])?,
+                polynomials: &polynomials,
+                order: grids.order_of(at, &cloud.order),
+                // Others are no wider than two cells, and touch four along each axis at most.
+                any_large: widest > 0.99 * level.grid.edge,
+            })
         };
+        let levels: Vec<_> = grids.levels.iter().enumerate().map(io).collect::<Result<_, _>>()?;
         // Refinement asks for the points, the grid for their balls: those move at rims.
-        let point_cells = if refines { build.list_points(&mut work, &io)? } else { None };
+        let point_cells = if refines { build.list_points(&mut work, &levels)? } else { None };
         clip::clip_balls(device, &mut work, &polynomials, &rims.clips(&cloud.points, &outcomes))?;
-        let lists = build.run(&mut work, &io)?;
-        if skips_cells(&grid) {
-            skip::skip_cells(device, &mut work, &grid, &grid_info, &lists.cells)?;
+        let lists = build.run(&mut work, &levels)?;
+        if grids.skip_cells() {
+            for io in &levels {
+                skip::skip_cells(device, &mut work, &io.level, &io.grid_info, &lists.cells)?;
+            }
         }
+        drop(levels);
+        let grid_levels = Buffer::from_slice(device, "grids", &grids.levels)?;
         watch.done(1);
         Ok(Self {
             polynomials,
             outcomes,
             outcome_buffer,
-            grid,
-            grid_info,
+            grids,
+            grid_levels,
             cells: lists.cells,
             slots: lists.slots,
             point_cells,

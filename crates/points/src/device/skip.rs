@@ -5,17 +5,17 @@ use super::line;
 use super::work::Work;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel};
 use kernels::layout::{
-    GRID_CELLS, GRID_INFO, GridInfo, MOST_SKIPPED, SKIP_BESIDE, SKIP_FAR, SKIP_MARKS_IN,
+    GRID_CELLS, GRID_INFO, GridLevel, MOST_SKIPPED, SKIP_BESIDE, SKIP_FAR, SKIP_MARKS_IN,
     SKIP_MARKS_OUT, SKIP_NEAR, SKIP_OCCUPIED,
 };
 use kernels::spirv;
 use std::sync::Arc;
 
-/// Writes the distances into the ranges of empty cells, so that rays leave all empty cells around one at once.
+/// Writes the distances into the ranges of a grid's empty cells, so that rays leave all empty cells around one at once.
 pub(crate) fn skip_cells(
     device: &Arc<Device>,
     rec: &mut Work,
-    grid: &GridInfo,
+    level: &GridLevel,
     grid_info: &Buffer,
     cells: &Buffer,
 ) -> Result<(), GpuError> {
@@ -32,14 +32,16 @@ pub(crate) fn skip_cells(
         &spirv::skip_cells(),
         &[GRID_INFO, GRID_CELLS, SKIP_OCCUPIED, SKIP_BESIDE, SKIP_NEAR, SKIP_FAR],
     )?;
-    let [width, height, depth] = grid.resolution;
+    let [width, height, depth] = level.grid.resolution;
+    let first = u64::from(level.first_cell) * 8;
+    let bytes = u64::from(level.grid.cell_count()) * 8;
     let words = width.div_ceil(u32::BITS) * height * depth;
     let marks: Vec<Buffer> = (0..MOST_SKIPPED)
         .map(|_| Buffer::new(device, "marks of cells", u64::from(words) * 4))
         .collect::<Result<_, _>>()?;
     rec.pass("mark_occupied", &occupied)
         .buffer(GRID_INFO, grid_info)
-        .buffer(GRID_CELLS, cells)
+        .buffer_part(GRID_CELLS, cells, first, bytes)
         .buffer(SKIP_MARKS_OUT, &marks[0])
         .dispatch(line(words));
     for grown in marks.windows(2) {
@@ -50,7 +52,10 @@ pub(crate) fn skip_cells(
             .dispatch(line(words));
     }
     let bindings = [SKIP_OCCUPIED, SKIP_BESIDE, SKIP_NEAR, SKIP_FAR];
-    let pass = rec.pass("skip_cells", &skip).buffer(GRID_INFO, grid_info).buffer(GRID_CELLS, cells);
+    let pass = rec
+        .pass("skip_cells", &skip)
+        .buffer(GRID_INFO, grid_info)
+        .buffer_part(GRID_CELLS, cells, first, bytes);
     let pass =
         bindings.into_iter().zip(&marks).fold(pass, |pass, (at, marks)| pass.buffer(at, marks));
     pass.dispatch(line(words));

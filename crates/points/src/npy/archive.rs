@@ -1,7 +1,7 @@
 //! `.npz` archives: the array of positions, and all others of its length.
 
 use crate::collect::Collector;
-use crate::columns::{Part, Shared, SideBySide, fill};
+use crate::columns::{Part, Shared, SideBySide, check_expansion, fill};
 use crate::error::PointsError;
 use crate::field::Type;
 use crate::meaning;
@@ -19,10 +19,11 @@ use zip::{CompressionMethod, ZipArchive};
 
 /// Most arrays of an archive.
 const MAX_ARRAYS: usize = 1000;
-/// Points that take more memory than this take at most [`MAX_EXPANSION`] times the file's bytes:
-/// beyond, the file is taken for one that was made to fill memory.
-const FREE_BYTES: u64 = 1 << 28;
-const MAX_EXPANSION: u64 = 100;
+
+/// Most bytes that are unpacked more than once.
+const MAX_AGAIN: u64 = 1 << 32;
+
+const HELP_ORDER: &str = "save numpy.ascontiguousarray of it, or do not compress";
 
 /// Whether a file that begins so is an archive.
 pub(crate) fn sniff(start: &[u8]) -> bool {
@@ -41,6 +42,7 @@ struct Member {
 }
 
 impl Member {
+    /// The array from its beginning.
     fn open<'f>(&self, file: &'f Shared<'_>) -> Box<dyn Read + 'f> {
         let stored = Part::new(file, self.start, self.end).buffered();
         let reader: Box<dyn Read + 'f> = match self.deflated {
@@ -48,6 +50,23 @@ impl Member {
             false => Box::new(stored),
         };
         Box::new(Checked { reader, left: self.size, crc: Crc::new(), expected: self.crc })
+    }
+
+    /// The array from a place on, which takes unpacking what is before it. Without, the checksum is
+    /// left alone if more than a header is before it.
+    fn open_at<'f>(
+        &self,
+        file: &'f Shared<'_>,
+        place: u64,
+        header: &Header,
+    ) -> io::Result<Box<dyn Read + 'f>> {
+        if !self.deflated && place > header.length {
+            let start = self.start.saturating_add(place);
+            return Ok(Box::new(Part::new(file, start, self.end).buffered()));
+        }
+        let mut reader = self.open(file);
+        io::copy(&mut reader.by_ref().take(place), &mut io::sink())?;
+        Ok(reader)
     }
 }
 
@@ -88,6 +107,7 @@ pub(crate) fn read(
 ) -> Result<PointSet, PointsError> {
     let io_error = |source| PointsError::Io { path: path.into(), source };
     let file: Shared<'_> = RefCell::new(source.seekable().map_err(io_error)?);
+    file.borrow_mut().begin_pass(false);
     let members = members(&file, path)?;
     let mut entries = Vec::new();
     let mut left_out = Vec::new();
@@ -125,21 +145,22 @@ pub(crate) fn read(
                 bytes_found: Some(left),
             });
         }
+        // The columns that come first are unpacked again for each that follows.
+        let again = needed.saturating_mul(rows.names.len() as u64) / 2;
+        if member.deflated && rows.apart && again > MAX_AGAIN {
+            let place = format!("the order of '{}'", member.name);
+            let found = format!("{} columns one after the other", rows.names.len());
+            let expected = "one row after the other, as the array is packed";
+            return Err(PointsError::wrong(path, &place, found, expected, HELP_ORDER));
+        }
         columns += rows.names.len();
         bytes = bytes.saturating_add(needed);
         taken.push((entry, chosen));
     }
     let length = file.borrow().length();
-    if bytes > FREE_BYTES && bytes / MAX_EXPANSION > length {
-        return Err(PointsError::wrong(
-            path,
-            "the size of the unpacked arrays",
-            format!("{bytes} bytes"),
-            &format!("at most {MAX_EXPANSION} times the file's {length}"),
-            "save them with numpy.savez, which does not compress",
-        ));
-    }
+    check_expansion(path, bytes, length)?;
 
+    file.borrow_mut().begin_pass(true);
     let mut names = Vec::new();
     let mut kinds: Vec<Type> = Vec::new();
     let mut arrays = Vec::new();
@@ -147,7 +168,7 @@ pub(crate) fn read(
         let Entry { member, header, rows } = entry;
         names.extend(entry.names(chosen));
         kinds.extend(rows.kinds());
-        let open = || Ok(member.open(&file));
+        let open = |place: u64| member.open_at(&file, place, header);
         arrays.extend(rows.arrays(header, &member.name, &open).map_err(io_error)?);
     }
     let table = SideBySide::new(arrays, points, path)?;
@@ -244,7 +265,7 @@ fn members(file: &Shared<'_>, path: &Path) -> Result<Vec<Member>, PointsError> {
         let entry = archive.by_index_raw(index).map_err(damaged)?;
         let name = entry.name().map_err(damaged)?;
         let Some(name) = name.strip_suffix(".npy") else { continue };
-        let place = format!("the packing of '{name}'");
+        let place = format!("the packing of '{}'", meaning::printable(name));
         if entry.encrypted() {
             return Err(wrong(&place, "encryption".to_owned(), "none"));
         }
@@ -255,7 +276,7 @@ fn members(file: &Shared<'_>, path: &Path) -> Result<Vec<Member>, PointsError> {
         };
         let Some(start) = entry.data_start() else { continue };
         members.push(Member {
-            name: name.to_owned(),
+            name: meaning::printable(name),
             start,
             end: start.saturating_add(entry.compressed_size()),
             size: entry.size(),

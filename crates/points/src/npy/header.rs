@@ -31,6 +31,7 @@ pub(super) struct Record {
     /// The numbers in it, by name where it has named fields. What is no number is left out.
     pub(super) numbers: Vec<(String, Place)>,
     pub(super) has_names: bool,
+    has_objects: bool,
 }
 
 impl Header {
@@ -110,7 +111,8 @@ fn lengths(literal: &Literal) -> Option<Vec<u64>> {
 
 impl Record {
     fn of(descr: &Literal) -> Result<Self, Trouble> {
-        let mut record = Self { size: 0, numbers: Vec::new(), has_names: false };
+        let mut record =
+            Self { size: 0, numbers: Vec::new(), has_names: false, has_objects: false };
         match descr {
             Literal::List(fields) => {
                 record.has_names = true;
@@ -118,9 +120,14 @@ impl Record {
             }
             Literal::Text(name) => {
                 let (coding, big, size) = number_type(name)?;
+                record.has_objects |= is_object(name);
                 record.push("", coding, big, size, 1)?;
             }
             _ => return Err(Trouble::header("no type of elements", "one such as '<f4'")),
+        }
+        // Arrays with Python's objects are pickled as a whole.
+        if record.has_objects {
+            record.numbers.clear();
         }
         Ok(record)
     }
@@ -153,6 +160,7 @@ impl Record {
             match kind {
                 Literal::Text(kind) => {
                     let (coding, big, size) = number_type(kind)?;
+                    self.has_objects |= is_object(kind);
                     self.push(&name, coding, big, size, count)?;
                 }
                 Literal::List(inner) => {
@@ -194,6 +202,11 @@ fn too_large() -> Trouble {
     Trouble::header(format!("an element of more than {MAX_RECORD} bytes"), "a smaller one")
 }
 
+/// Whether a type is that of Python's objects.
+fn is_object(name: &str) -> bool {
+    name.trim_start_matches(['<', '=', '|', '>']).starts_with('O')
+}
+
 /// How a type's numbers are stored, whether their bytes are in big-endian order, and its size in
 /// bytes. Text, dates, complex numbers and the like are no numbers.
 fn number_type(name: &str) -> Result<(Option<Coding>, bool, usize), Trouble> {
@@ -226,7 +239,7 @@ fn number_type(name: &str) -> Result<(Option<Coding>, bool, usize), Trouble> {
         ('f', 4) => number(Type::F32),
         ('f', 8) => number(Type::F64),
         ('?', _) => number(Type::U8),
-        ('f' | 'c' | 'S' | 'a' | 'V' | 'M' | 'm' | 'U', _) => None,
+        ('f' | 'c' | 'S' | 'a' | 'V' | 'M' | 'm' | 'U' | 'O', _) => None,
         _ => return Err(wrong()),
     };
     let bytes = if letter == 'U' { count.checked_mul(4) } else { Some(count) };

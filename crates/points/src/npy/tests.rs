@@ -246,7 +246,9 @@ fn what_is_wrong_with_an_array_is_named() {
         (npy("'<f4'", false, "(2, 2)", &rows), "found the shape (2, 2)"),
         (npy("'<f4'", false, "()", &rows), "found the shape ()"),
         (npy("'<f4'", false, "(1, 5000)", &rows), "expected at most 1000 columns"),
-        (npy("'|O'", false, "(2, 3)", &rows), "found the type '|O'"),
+        (npy("'|O'", false, "(2, 3)", &rows), "found elements that are no numbers"),
+        (npy("[('x', '<f4'), ('o', 'O')]", false, "(2,)", &rows), "elements that are no numbers"),
+        (npy("'<q9'", false, "(2, 3)", &rows), "found the type '<q9'"),
         (npy("'<c8'", false, "(2, 3)", &rows), "found elements that are no numbers"),
         (npy("'<f99999999999999999999'", false, "(2, 3)", &rows), "found the type '<f999"),
         (npy("'<U4611686018427387904'", false, "(2, 3)", &rows), "an element of more than"),
@@ -311,4 +313,16 @@ fn archives_that_are_made_to_fill_memory_are_refused() {
     let zeros = npy("'<f4'", false, "(30000000, 3)", &vec![0; 360_000_000]);
     let found = message(&npz(&[("xyz", zeros)], true));
     assert!(found.contains("found 360000000 bytes as the size of the unpacked arrays"), "{found}");
+}
+
+/// Each of a thousand columns would be found by unpacking all those before it.
+#[test]
+fn columns_that_take_long_to_unpack_are_refused() {
+    let zeros = npy("'<f8'", true, "(4000, 999)", &vec![0; 4000 * 999 * 8]);
+    let xyz = npy("'<f4'", false, "(4000, 3)", &vec![0; 48_000]);
+    let found = message(&npz(&[("a", zeros.clone()), ("xyz", xyz.clone())], true));
+    assert!(found.contains("found 999 columns one after the other as the order of 'a'"), "{found}");
+    let few = npy("'<f8'", true, "(4000, 3)", &vec![0; 96_000]);
+    assert_eq!(read(&npz(&[("xyz", few)], true)).len(), 4000);
+    assert_eq!(read(&npz(&[("xyz", xyz), ("a", zeros)], false)).len(), 4000);
 }

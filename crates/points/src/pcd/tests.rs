@@ -106,6 +106,7 @@ fn organised_clouds_say_so() {
     let set = read(file.as_bytes()).unwrap();
     assert_eq!((set.len(), set.non_finite), (3, 1));
     assert_eq!(set.format, "PCD 0.5, ascii, organised");
+    assert!(super::is_organised(file.as_bytes()) && !super::is_organised(&binary()));
 }
 
 #[test]

@@ -186,8 +186,9 @@ pub(super) fn find(start: &[u8], whole: bool, path: &Path) -> Result<Layout, Poi
         }
     };
     let bytes: usize = head.rows.iter().map(|row| row.text.len() + 1).sum();
-    let left_out: Vec<&str> = (names.iter().flat_map(|names| &names.names).zip(&columns))
-        .filter_map(|(name, &read)| (!read).then_some(name.as_str()))
+    let left_out: Vec<String> = (names.iter().flat_map(|names| &names.names).zip(&columns))
+        .filter(|(_, read)| !**read)
+        .map(|(name, _)| meaning::printable(name))
         .collect();
     Ok(Layout {
         separator,
@@ -334,7 +335,7 @@ fn in_words(
     comma: bool,
     names: Option<&Names>,
     fields: &[Field],
-    left_out: &[&str],
+    left_out: &[String],
     rows: usize,
 ) -> String {
     let separator = separator.in_words();
@@ -348,6 +349,7 @@ fn in_words(
     };
     let text = match left_out {
         [] => String::new(),
+        names if names.len() > 8 => format!("; left out for being text: {} columns", names.len()),
         names => format!("; left out for being text: {}", names.join(" ")),
     };
     format!("text, separated by {separator}{comma}, {columns}{text}")

@@ -144,7 +144,7 @@ impl Renderer {
         let io = PointLightIo {
             shadows: &self.shadows,
             volumes,
-            grid_info: &self.surfaces.grid_info,
+            grid_levels: &self.surfaces.grid_levels,
             lights: &self.lights,
             paths: self.wave.paths(),
             lit_rays: self.wave.lit_rays(),

@@ -30,7 +30,7 @@ impl AlbedoIo<'_> {
 
     /// Binds all of it.
     pub fn bind<'p>(self, pass: PassBuilder<'p>) -> PassBuilder<'p> {
-        pass.buffer(TRACE_INFO, &self.surfaces.grid_info)
+        pass.buffer(TRACE_INFO, &self.surfaces.grid_levels)
             .buffer(TRACE_CELLS, &self.surfaces.cells)
             .buffer(TRACE_SLOTS, &self.surfaces.slots)
             .buffer(TRACE_POLYNOMIALS, &self.surfaces.polynomials)

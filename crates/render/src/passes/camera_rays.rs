@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// What the pass works on.
 #[derive(Clone, Copy)]
 pub(crate) struct CameraRaysIo<'a> {
-    pub grid_info: &'a Buffer,
+    pub grid_levels: &'a Buffer,
     /// Where the reconstruction filter's integral takes equal steps.
     pub filter: &'a Buffer,
     /// The path of every ray, but for its pixel.
@@ -48,7 +48,7 @@ impl CameraRays {
     pub fn record(&self, rec: &mut Recorder, io: CameraRaysIo<'_>, params: &CameraParams) {
         io.state
             .bind_written(rec.pass(Self::NAME, &self.kernel))
-            .buffer(TRACE_INFO, io.grid_info)
+            .buffer(TRACE_INFO, io.grid_levels)
             .buffer(WAVE_PATHS, io.paths)
             .buffer(CAMERA_FILTER, io.filter)
             .buffer(CAMERA_PATH, io.start)

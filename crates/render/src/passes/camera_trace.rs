@@ -73,7 +73,7 @@ impl CameraTrace {
             .buffer(DISC_RANGES_IN, &io.lists.tiles)
             .buffer(DISC_KEYS_IN, &io.lists.pairs.keys)
             .buffer(DISC_SLOTS_IN, &io.lists.pairs.slots)
-            .buffer(TRACE_INFO, &io.surfaces.grid_info)
+            .buffer(TRACE_INFO, &io.surfaces.grid_levels)
             .buffer(TRACE_CELLS, &io.surfaces.cells)
             .buffer(TRACE_SLOTS, &io.surfaces.slots)
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)

@@ -75,7 +75,7 @@ impl GridTrace {
             0 => io.state.bind_update(pass),
             _ => io.state.current.bind_in_place(pass),
         };
-        pass.buffer(TRACE_INFO, &io.surfaces.grid_info)
+        pass.buffer(TRACE_INFO, &io.surfaces.grid_levels)
             .buffer(TRACE_CELLS, &io.surfaces.cells)
             .buffer(TRACE_SLOTS, &io.surfaces.slots)
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)

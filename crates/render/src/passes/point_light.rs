@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub(crate) struct PointLightIo<'a> {
     pub shadows: &'a RayState,
     pub volumes: &'a VolumeBuffers,
-    pub grid_info: &'a Buffer,
+    pub grid_levels: &'a Buffer,
     pub lights: &'a Buffer,
     pub paths: &'a Buffer,
     pub lit_rays: &'a Buffer,
@@ -79,7 +79,7 @@ impl PointLight {
         io.shadows
             .started()
             .bind_written(rec.pass(Self::RAYS, &self.rays))
-            .buffer(TRACE_INFO, io.grid_info)
+            .buffer(TRACE_INFO, io.grid_levels)
             .buffer(SHADE_LIGHTS, io.lights)
             .buffer(MARCH_VOLUMES, &io.volumes.infos)
             .buffer(MARCH_CELLS, &io.volumes.cells)

@@ -60,7 +60,7 @@ impl Refine {
     pub fn record(&self, rec: &mut Recorder, io: RefineIo<'_>, params: &TraceParams) {
         io.state
             .bind_read(rec.pass(Self::NAME, &self.refine))
-            .buffer(TRACE_INFO, &io.surfaces.grid_info)
+            .buffer(TRACE_INFO, &io.surfaces.grid_levels)
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
             .buffer(TRACE_LIVE, io.live)
             .buffer(SHADE_OBJECTS, io.objects)
@@ -84,7 +84,7 @@ impl Refine {
     ) {
         state
             .bind_in_place(rec.pass(Self::RESUME, &self.resume))
-            .buffer(TRACE_INFO, &surfaces.grid_info)
+            .buffer(TRACE_INFO, &surfaces.grid_levels)
             .buffer(TRACE_HITS, hits)
             .buffer(WAVE_MARKS, marks)
             .push(params)

@@ -64,7 +64,7 @@ impl Scatter {
     pub fn record(&self, rec: &mut Recorder, io: ScatterIo<'_>, params: &WaveParams) {
         io.state
             .bind_move(rec.pass(Self::NAME, &self.kernel))
-            .buffer(TRACE_INFO, &io.surfaces.grid_info)
+            .buffer(TRACE_INFO, &io.surfaces.grid_levels)
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
             .buffer(TRACE_HITS, io.hits)
             .buffer(SHADE_OBJECTS, io.objects)

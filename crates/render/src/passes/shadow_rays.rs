@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub(crate) struct ShadowRaysIo<'a> {
     /// The shadow rays: as those towards the light before left it, and for those towards this one.
     pub shadows: &'a RayState,
-    pub grid_info: &'a Buffer,
+    pub grid_levels: &'a Buffer,
     /// One `LitHit` a ray.
     pub lit_hits: &'a Buffer,
     pub lights: &'a Buffer,
@@ -56,7 +56,7 @@ impl ShadowRays {
     pub fn record(&self, rec: &mut Recorder, io: ShadowRaysIo<'_>, params: &WaveParams) {
         io.shadows
             .bind_update(rec.pass(Self::NAME, &self.kernel))
-            .buffer(TRACE_INFO, io.grid_info)
+            .buffer(TRACE_INFO, io.grid_levels)
             .buffer(WAVE_LIT_HITS, io.lit_hits)
             .buffer(SHADE_LIGHTS, io.lights)
             .buffer(SHADE_FILM, io.film)

@@ -52,7 +52,7 @@ impl SurfaceHit {
     pub fn record(&self, rec: &mut Recorder, io: SurfaceHitIo<'_>, params: &TraceParams) {
         io.state
             .bind_read(rec.pass(Self::NAME, &self.kernel))
-            .buffer(TRACE_INFO, &io.surfaces.grid_info)
+            .buffer(TRACE_INFO, &io.surfaces.grid_levels)
             .buffer(TRACE_CELLS, &io.surfaces.cells)
             .buffer(TRACE_SLOTS, &io.surfaces.slots)
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
