@@ -175,12 +175,12 @@ pub(super) fn find(start: &[u8], whole: bool, path: &Path) -> Result<Layout, Poi
     let numbers: Vec<usize> = (0..in_first).filter(|&column| columns[column]).collect();
     let sample = sample_of(&head.rows, separator, comma, &numbers);
     let fields = match &names {
-        Some(names) => {
+        Some(names) if !numbers.is_empty() => {
             let names: Vec<_> = numbers.iter().map(|&place| names.names[place].clone()).collect();
             meaning::by_names(&names, None, &sample)
         }
         None if numbers.len() >= 3 => meaning::by_place(&sample, None),
-        None => {
+        _ => {
             let expected = "3 numbers or more: x y z".to_owned();
             return Err(wrong(first.line, Quoted(first.text).to_string(), expected, HELP));
         }

@@ -186,6 +186,10 @@ fn what_is_wrong_is_named_with_its_line() {
           ('a', 'b', 'c')",
         ),
         ("1 2\n3 4\n", "a.txt:1: found '1 2', expected 3 numbers or more: x y z"),
+        (
+            "hello there\nnot a number\n",
+            "a.txt:2: found 'not a number', expected 3 numbers or more",
+        ),
         ("hello\n", "a.txt:1: found names of columns alone, expected lines with x y z"),
         ("x y z\n", "a.txt:1: found names of columns alone"),
         ("# nothing\n\n", "a.txt:1: found no line of numbers, expected lines with x y z"),
