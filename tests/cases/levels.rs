@@ -82,7 +82,10 @@ fn several_grids_give_the_bytes_of_one() {
         assert_eq!(levels_of(&plan), 3, "{settings}");
         assert_same_film(settings, &one, &bench.render(&plan).film);
     }
-    assert_same_film("one work a pass", &one, &bench.render_within(&scene("", 60.0), Some(1)).film);
+    for settings in ["primary = \"grid\"", "primary = \"discs\""] {
+        let bit_by_bit = bench.render_within(&scene(settings, 60.0), Some(1));
+        assert_same_film("a little work a pass", &one, &bit_by_bit.film);
+    }
 }
 
 #[test]

@@ -73,7 +73,8 @@ pub fn with_engine<T>(
     args: &DeviceArgs,
     work: impl FnOnce(&Engine) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
-    let engine = Engine::open(args)?;
+    // Not cut off: a process that ends while a driver starts its threads may crash.
+    let engine = interrupt::held(|| Engine::open(args))?;
     let result = work(&engine);
     let Engine::Gpu(device) = engine else { return result };
     let instance = Arc::clone(device.instance());

@@ -20,23 +20,28 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
         }
         // A pipe or a device: it is written directly.
         Ok(found) if !found.is_file() => return Ok(()),
+        Ok(found) if found.permissions().readonly() => {
+            return Err(film::FilmError::WriteProtected { path: path.into() }.into());
+        }
         _ => {}
     }
-    let folder = folder_of(path);
+    // Where a link leads to, if that exists.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let folder = folder_of(&target);
     let folder_shown = folder.display();
     if !folder.is_dir() {
         return Err(Failure::usage(format!(
             "{shown}: the folder '{folder_shown}' does not exist; create it or choose another"
         )));
     }
-    tempfile::tempfile_in(folder).map_err(|error| {
-        write_failure(
-            path,
-            &error,
-            &format!("cannot write to the folder '{folder_shown}'; choose another"),
-        )
-    })?;
-    Ok(())
+    // Some file systems have no files without a name: that is not to be left behind.
+    interrupt::writing(|| match tempfile::tempfile_in(folder) {
+        Ok(_) => Ok(()),
+        Err(error) => {
+            let what = format!("cannot write to the folder '{folder_shown}'; choose another");
+            Err(write_failure(path, &error, &what))
+        }
+    })
 }
 
 /// Fails where two of `outputs` are one file, or one of them is an input.

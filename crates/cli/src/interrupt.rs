@@ -2,7 +2,7 @@
 //!
 //! The first signal asks work that looks for it (see [`held`]) to stop; anything else has nothing to
 //! clean up and ends at once. The second signal ends the process at once, but lets a file that is
-//! being written be finished: half-written files are never left behind.
+//! being written be finished, for two seconds: half-written files are never left behind.
 
 use crate::errors::{Exit, Failure};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -29,6 +29,7 @@ pub fn install() -> Result<(), Failure> {
         } else if HELD.load(Ordering::SeqCst) > 0 {
             return;
         }
+        film::remove_unfinished();
         std::process::exit(i32::from(Exit::Interrupted.code()));
     })
     .map_err(|error| Failure::exhausted(format!("cannot handle interruptions: {error}")))

@@ -24,6 +24,12 @@ pub enum FilmError {
         /// The path as given.
         path: PathBuf,
     },
+    /// The file to read is neither a file nor a folder.
+    #[error("{}: found a pipe or a device, expected a file; save it to a file first", path.display())]
+    NotFile {
+        /// The path as given.
+        path: PathBuf,
+    },
     /// What should be the output's folder is none.
     #[error(
         "{}: there is no folder '{}'; create it or choose another",
@@ -103,19 +109,23 @@ pub enum FilmError {
 }
 
 impl FilmError {
-    /// Whether the disk, or the user's share of it, is full.
+    /// Whether the disk, or the user's share of it, is full, or files may not grow that long.
     pub fn is_out_of_space(&self) -> bool {
         matches!(self, Self::Write { source, .. } if is_full(source))
     }
 }
 
 fn is_full(error: &io::Error) -> bool {
-    matches!(error.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded)
+    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge)
 }
 
 /// What to do about an error of writing.
 fn next_step(error: &io::Error) -> &'static str {
     match error.kind() {
+        io::ErrorKind::FileTooLarge => {
+            "raise the limit on the size of files, as 'ulimit -f' shows it"
+        }
         _ if is_full(error) => "free some space or choose another disk",
         io::ErrorKind::PermissionDenied => "allow writing to its folder or choose another",
         io::ErrorKind::ReadOnlyFilesystem => "choose a folder on another disk",

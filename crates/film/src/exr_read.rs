@@ -6,6 +6,7 @@
 
 use crate::error::FilmError;
 use crate::exr_header::{COMPRESSIONS, COMPRESSIONS_READ, ExrHeader, read_exr_headers};
+use crate::plausible::too_short_for;
 use exr::image::Image;
 use exr::meta::attribute::{IntegerBounds, Text};
 use exr::prelude::{AnyChannels, FlatSamples, Layers, ReadChannels, ReadLayers, Vec2, read};
@@ -248,7 +249,12 @@ fn check_readable(path: &Path, headers: &[ExrHeader]) -> Result<(), FilmError> {
             }
         }
     }
-    Ok(())
+    let bytes = headers.iter().map(ExrHeader::pixel_bytes).fold(0, u64::saturating_add);
+    let read_error = |source| FilmError::Read { path: path.into(), source };
+    match too_short_for(bytes, path).map_err(read_error)? {
+        Some(reason) => Err(not_exr(path, &reason)),
+        None => Ok(()),
+    }
 }
 
 fn not_exr(path: &Path, reason: &str) -> FilmError {

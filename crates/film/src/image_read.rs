@@ -2,15 +2,18 @@
 
 use crate::error::FilmError;
 use crate::exr_read::read_exr;
+use crate::plausible::too_short_for;
 use crate::raster_read::is_exr;
 use crate::srgb::linear_from_srgb;
-use image::{DynamicImage, ImageError, ImageReader};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
 /// Longest side of an image.
 const LONGEST: u32 = 65_536;
+/// What decoding may take, and what it may give.
+const MOST_BYTES: u64 = 4 << 30;
 
 /// An image as a file has it, without its alpha.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,12 +61,23 @@ pub(crate) fn decode(path: &Path) -> Result<DynamicImage, FilmError> {
     }
     let mut limits = image::Limits::default();
     (limits.max_image_width, limits.max_image_height) = (Some(LONGEST), Some(LONGEST));
-    limits.max_alloc = Some(4 << 30);
+    limits.max_alloc = Some(MOST_BYTES);
     reader.limits(limits);
-    let decoded = reader.decode().map_err(|error| match error {
+    let image_error = |error| match error {
         ImageError::IoError(source) => read_error(source),
         other => not_image(other.to_string()),
-    })?;
+    };
+    let decoder = reader.into_decoder().map_err(image_error)?;
+    let bytes = decoder.total_bytes();
+    if let Some(reason) = too_short_for(bytes, path).map_err(read_error)? {
+        return Err(not_image(reason));
+    }
+    if bytes > MOST_BYTES {
+        return Err(not_image(format!(
+            "found {bytes} bytes of pixels, at most {MOST_BYTES} are read"
+        )));
+    }
+    let decoded = DynamicImage::from_decoder(decoder).map_err(image_error)?;
     if decoded.width() == 0 || decoded.height() == 0 {
         return Err(not_image("found no pixel".to_owned()));
     }
@@ -104,6 +118,11 @@ fn from_exr(path: &Path) -> Result<Image, FilmError> {
     if width == 0 || height == 0 || width > LONGEST || height > LONGEST {
         let reason =
             format!("found {width} x {height} pixels, more than {LONGEST} on a side or none");
+        return Err(FilmError::NotExr { path: path.into(), reason });
+    }
+    let read_error = |source| FilmError::Read { path: path.into(), source };
+    let bytes = size_of::<[f32; 3]>() as u64 * u64::from(width) * u64::from(height);
+    if let Some(reason) = too_short_for(bytes, path).map_err(read_error)? {
         return Err(FilmError::NotExr { path: path.into(), reason });
     }
     let mut texels = vec![[0.0; 3]; width as usize * height as usize];

@@ -65,6 +65,33 @@ fn exr_files_fill_their_display_window() {
     assert_eq!(image, Image { width: 4, height: 3, texels: Texels::Linear(expected) });
 }
 
+/// A few bytes that would take gigabytes; found by fuzzing.
+#[test]
+fn sizes_without_bytes_for_them_are_errors_before_memory_is_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a");
+    fs::write(&path, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n\x02\x02").unwrap();
+    let message = read_image(&path).unwrap_err().to_string();
+    assert!(message.contains("announces 43200000000 bytes of pixels"), "{message}");
+
+    let exr = folder.path().join("a.exr");
+    let plane = vec![0.5; 16];
+    let planes = ["R", "G", "B"].map(|name| (name.to_owned(), plane.clone())).to_vec();
+    write_planes([4, 4], [0, 0], [4, 4], planes, &exr).unwrap();
+    let whole = fs::read(&exr).unwrap();
+    for window in ["displayWindow", "dataWindow"] {
+        let name = format!("{window}\0box2i\0");
+        let at = whole.windows(name.len()).position(|bytes| bytes == name.as_bytes()).unwrap();
+        // Behind the name the length, then left, top, right, bottom.
+        let right = at + name.len() + 4 + 8;
+        let mut bytes = whole.clone();
+        bytes[right..right + 8].copy_from_slice(&[0xff, 0xff, 0, 0, 0xff, 0xff, 0, 0]);
+        fs::write(&exr, &bytes).unwrap();
+        let message = read_image(&exr).unwrap_err().to_string();
+        assert!(message.contains("announces"), "{window}: {message}");
+    }
+}
+
 #[test]
 fn files_that_are_no_image_are_errors() {
     let folder = tempfile::tempdir().unwrap();

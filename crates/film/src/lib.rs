@@ -13,6 +13,7 @@ mod exr_read;
 mod exr_write;
 mod image_read;
 mod picture;
+mod plausible;
 mod raster_read;
 mod srgb;
 mod store;
@@ -28,7 +29,7 @@ pub use image_read::{Image, Texels, read_image};
 pub use picture::{Film, Provenance, Window};
 pub use raster_read::{Raster, is_exr, read_raster};
 pub use srgb::{linear_from_srgb, srgb_byte};
-pub use store::store;
+pub use store::{remove_unfinished, store};
 pub use tone::{Tone, ToneCurve};
 
 use std::ffi::OsStr;

@@ -26,12 +26,17 @@ pub struct Raster {
 /// Whether a file begins as an EXR does.
 ///
 /// # Errors
-/// [`FilmError::IsFolder`] for a folder, [`FilmError::Read`] if it cannot be read.
+/// [`FilmError::IsFolder`] for a folder, [`FilmError::NotFile`] for a pipe or a device, which is not opened:
+/// pictures are read more than once. [`FilmError::Read`] if it cannot be read.
 pub fn is_exr(path: &Path) -> Result<bool, FilmError> {
-    if path.is_dir() {
+    let read_error = |source| FilmError::Read { path: path.into(), source };
+    let found = path.metadata().map_err(read_error)?;
+    if found.is_dir() {
         return Err(FilmError::IsFolder { path: path.into() });
     }
-    let read_error = |source| FilmError::Read { path: path.into(), source };
+    if !found.is_file() {
+        return Err(FilmError::NotFile { path: path.into() });
+    }
     let mut start = Vec::new();
     let file = File::open(path).map_err(read_error)?;
     file.take(EXR_MAGIC.len() as u64).read_to_end(&mut start).map_err(read_error)?;

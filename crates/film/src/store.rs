@@ -9,6 +9,11 @@ use crate::error::FilmError;
 use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tempfile::NamedTempFile;
+
+/// What is being written aside.
+static ASIDE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// A chain of links longer than this is taken for a loop, as Linux does.
 const MAX_LINKS: usize = 40;
@@ -48,16 +53,51 @@ pub fn store(path: &Path, bytes: &[u8]) -> Result<(), FilmError> {
     }
 }
 
+/// Removes what is being written aside: for a process that ends at once, in which no destructor runs.
+pub fn remove_unfinished() {
+    remove(&mut aside());
+}
+
+fn remove(paths: &mut Vec<PathBuf>) {
+    for path in paths.drain(..) {
+        // It may have its name by now, and then it is whole.
+        let _ = fs::remove_file(path);
+    }
+}
+
+fn aside() -> MutexGuard<'static, Vec<PathBuf>> {
+    ASIDE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Writes aside, then renames. On failure the temporary file is removed by its destructor.
 fn replace(target: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> io::Result<()> {
     // Opened here rather than by `tempfile`, whose errors name the temporary file; `as_file_mut` for
     // the same reason. New files have the permissions that the user's umask leaves of any file's.
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);
-    let mut file = tempfile::Builder::new()
-        .prefix(".pointillist-")
-        .make_in(folder_of(target), |path| options.open(path))?;
+    let file =
+        tempfile::Builder::new().prefix(".pointillist-").make_in(folder_of(target), |path| {
+            let mut aside = aside();
+            let file = options.open(path)?;
+            aside.push(path.to_owned());
+            Ok(file)
+        })?;
+    let path = file.path().to_owned();
+    let written = fill_and_rename(file, target, bytes, permissions);
+    aside().retain(|other| *other != path);
+    written
+}
+
+fn fill_and_rename(
+    mut file: NamedTempFile,
+    target: &Path,
+    bytes: &[u8],
+    permissions: Option<fs::Permissions>,
+) -> io::Result<()> {
     file.as_file_mut().write_all(bytes)?;
+    // Disks across a network say only here that they are full, and a machine that loses power must not
+    // find the new name on an empty file.
+    file.as_file().sync_data()?;
     if let Some(permissions) = permissions {
         file.as_file().set_permissions(permissions)?;
     }
@@ -83,4 +123,27 @@ fn follow_links(path: &Path) -> io::Result<PathBuf> {
         }
     }
     Err(io::Error::other("found more than 40 links that lead from one to the next"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Other tests write at the same time: this one looks at its own alone.
+    #[test]
+    fn what_is_aside_is_known_until_it_has_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("a");
+        store(&target, b"whole").unwrap();
+        let known = |path: &PathBuf| path.starts_with(folder.path());
+        assert!(!aside().iter().any(known));
+        store(&folder.path().join("no/b"), b"").unwrap_err();
+        assert!(!aside().iter().any(known));
+        let unfinished = folder.path().join(".pointillist-unfinished");
+        fs::write(&unfinished, "half").unwrap();
+        let mut paths = vec![unfinished.clone(), folder.path().join("renamed-by-now")];
+        remove(&mut paths);
+        assert!(paths.is_empty() && !unfinished.exists());
+        assert_eq!(fs::read(&target).unwrap(), b"whole");
+    }
 }

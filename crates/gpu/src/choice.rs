@@ -82,7 +82,7 @@ pub(crate) fn choose(devices: &[DeviceInfo], choice: &DeviceChoice) -> Result<us
 pub(crate) fn choose_default(devices: &[DeviceInfo]) -> Result<DefaultDevice, GpuError> {
     let usable = || devices.iter().filter(|device| device.unusable.is_none());
     let Some(best) = usable().min_by_key(|device| (rank(device.kind), device.index)) else {
-        return Err(devices.first().map_or(GpuError::NoDevice, unusable));
+        return Err(devices.first().map_or_else(no_device, unusable));
     };
     let others = usable().count() - 1;
     let twins = usable().filter(|device| device.kind == best.kind).count() - 1;
@@ -96,7 +96,7 @@ pub(crate) fn choose_default(devices: &[DeviceInfo]) -> Result<DefaultDevice, Gp
 
 fn choose_named(devices: &[DeviceInfo], asked: &str) -> Result<usize, GpuError> {
     if devices.is_empty() {
-        return Err(GpuError::NoDevice);
+        return Err(no_device());
     }
     let unknown =
         || GpuError::UnknownDevice { asked: asked.to_owned(), available: list(devices.iter()) };
@@ -132,6 +132,10 @@ fn choose_named(devices: &[DeviceInfo], asked: &str) -> Result<usize, GpuError> 
         }
     };
     if found.unusable.is_some() { Err(unusable(found)) } else { Ok(found.index) }
+}
+
+fn no_device() -> GpuError {
+    GpuError::NoDevice { loader: Vec::new() }
 }
 
 fn rank(kind: DeviceKind) -> u32 {

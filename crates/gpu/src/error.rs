@@ -18,10 +18,31 @@ pub enum GpuError {
     },
     /// The loader is there, but lists no device.
     #[error(
-        "no Vulkan device was found; install a driver (on Debian: apt-get install libvulkan1 \
-         mesa-vulkan-drivers) or render with --device reference"
+        "no Vulkan device was found{}{}; install a driver (on Debian: apt-get install libvulkan1 \
+         mesa-vulkan-drivers) or render with --device reference",
+        chosen_drivers(),
+        in_words(loader)
     )]
-    NoDevice,
+    NoDevice {
+        /// What the loader says of drivers and layers that it cannot use.
+        loader: Vec<String>,
+    },
+    /// The loader itself fails.
+    #[error(
+        "the Vulkan loader fails in {call}{}{}; mend or remove the file that is at fault \
+         (VK_LOADER_DEBUG=all names all that it reads), or render with --device reference",
+        chosen_drivers(),
+        in_words(loader)
+    )]
+    Loader {
+        /// The function.
+        call: &'static str,
+        /// What the loader says of drivers and layers that it cannot use.
+        loader: Vec<String>,
+        /// Its answer.
+        #[source]
+        source: vk::Result,
+    },
     /// No device matches what the user asked for.
     #[error("no device '{asked}'; choose by name or index from: {available}")]
     UnknownDevice {
@@ -140,7 +161,8 @@ pub enum GpuError {
     },
     /// The device has no memory left for an object.
     #[error(
-        "out of device memory for '{object}', {bytes} bytes; use fewer points or a smaller picture"
+        "out of device memory for '{object}', {bytes} bytes; use fewer points or a smaller picture, or \
+         render with --device reference"
     )]
     OutOfMemory {
         /// The buffer or image.
@@ -149,7 +171,10 @@ pub enum GpuError {
         bytes: u64,
     },
     /// Memory could not be had for another reason.
-    #[error("allocating {bytes} bytes for '{object}' failed")]
+    #[error(
+        "allocating {bytes} bytes for '{object}' failed; use fewer points or a smaller picture, or \
+         render with --device reference"
+    )]
     Allocation {
         /// The buffer or image.
         object: &'static str,
@@ -160,13 +185,29 @@ pub enum GpuError {
         source: gpu_allocator::AllocationError,
     },
     /// The device stopped: a watchdog, a crash of the driver, or a device unplugged.
-    #[error("device lost in {work}; rerun with --cells-per-pass 1")]
+    #[error("device lost in {work}; rerun with --cells-per-pass 1, or with --device reference")]
     DeviceLost {
         /// The passes or the copy that were under way.
         work: String,
     },
+    /// A Vulkan call found no memory, the device's or the machine's.
+    #[error(
+        "out of memory in {call} for '{object}'; use fewer points or a smaller picture, or render with \
+         --device reference"
+    )]
+    CallOutOfMemory {
+        /// The function.
+        call: &'static str,
+        /// What it was called for.
+        object: &'static str,
+        /// The driver's answer.
+        #[source]
+        source: vk::Result,
+    },
     /// Any other failure of a Vulkan call.
-    #[error("{call} failed for '{object}'")]
+    #[error(
+        "{call} failed for '{object}'; update the device's driver, or render with --device reference"
+    )]
     Call {
         /// The function.
         call: &'static str,
@@ -185,7 +226,8 @@ impl GpuError {
         matches!(
             self,
             Self::NoLoader { .. }
-                | Self::NoDevice
+                | Self::NoDevice { .. }
+                | Self::Loader { .. }
                 | Self::UnknownDevice { .. }
                 | Self::AmbiguousDevice { .. }
                 | Self::UnusableDevice { .. }
@@ -197,7 +239,24 @@ impl GpuError {
     pub(crate) fn call(call: &'static str, object: &'static str) -> impl Fn(vk::Result) -> Self {
         move |source| match source {
             vk::Result::ERROR_DEVICE_LOST => Self::DeviceLost { work: format!("'{object}'") },
+            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY | vk::Result::ERROR_OUT_OF_HOST_MEMORY => {
+                Self::CallOutOfMemory { call, object, source }
+            }
             source => Self::Call { call, object, source },
         }
     }
+}
+
+/// The variables that say which drivers the loader looks at, if one is set: all others are then hidden.
+fn chosen_drivers() -> String {
+    // The order in which the loader looks at them.
+    let chosen = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].into_iter().find_map(|name| {
+        let value = std::env::var_os(name)?;
+        Some(format!(" with {name}='{}', which hides all other drivers", value.to_string_lossy()))
+    });
+    chosen.unwrap_or_default()
+}
+
+fn in_words(loader: &[String]) -> String {
+    if loader.is_empty() { String::new() } else { format!(" ({})", loader.join("; ")) }
 }

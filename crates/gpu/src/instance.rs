@@ -49,11 +49,12 @@ impl Instance {
         let entry =
             unsafe { ash::Entry::load() }.map_err(|source| GpuError::NoLoader { source })?;
         let failed = |call| {
-            move |result| match result {
+            let loader = || loader_errors(&entry);
+            move |source| match source {
                 vk::Result::ERROR_INCOMPATIBLE_DRIVER | vk::Result::ERROR_INITIALIZATION_FAILED => {
-                    GpuError::NoDevice
+                    GpuError::NoDevice { loader: loader() }
                 }
-                result => GpuError::call(call, "instance")(result),
+                source => GpuError::Loader { call, loader: loader(), source },
             }
         };
 
@@ -110,6 +111,13 @@ impl Instance {
             instance.validation = Some(Validation { functions, messenger, messages });
         }
         Ok(Arc::new(instance))
+    }
+
+    /// What the loader says of drivers and layers that it finds but cannot use. Empty where it says nothing, and
+    /// without a loader.
+    pub fn loader_errors() -> Vec<String> {
+        // SAFETY: as in `new`.
+        unsafe { ash::Entry::load() }.map_or_else(|_| Vec::new(), |entry| loader_errors(&entry))
     }
 
     /// Every physical device, usable or not, in the order of the driver's list.
@@ -213,7 +221,8 @@ impl Instance {
             vk::api_version_minor(version),
             vk::api_version_patch(version),
         ];
-        format!("{name} {major}.{minor}.{patch}").trim().to_owned()
+        let name = if name.is_empty() { "version" } else { &name };
+        format!("{name} {major}.{minor}.{patch}")
     }
 
     pub(crate) fn device_extensions(
@@ -289,6 +298,36 @@ fn require_validation(
         return Err(GpuError::NoValidation { missing: "VK_EXT_debug_utils" });
     }
     Ok(())
+}
+
+/// Makes an instance for the sake of what the loader says meanwhile: it tells errors to a messenger in the chain.
+fn loader_errors(entry: &ash::Entry) -> Vec<String> {
+    let messages: Box<Messages> = Box::default();
+    let mut messenger = messenger_info(&messages)
+        .message_severity(vk::DebugUtilsMessageSeverityFlagsEXT::ERROR)
+        .message_type(vk::DebugUtilsMessageTypeFlagsEXT::GENERAL);
+    let extensions = [ext::debug_utils::NAME.as_ptr()];
+    let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_2);
+    let info = vk::InstanceCreateInfo::default()
+        .application_info(&application)
+        .enabled_extension_names(&extensions)
+        .push_next(&mut messenger);
+    // SAFETY: everything `info` points to lives to the end of this function; the loader refuses an extension that
+    // it does not have. Nothing was made of the instance.
+    unsafe {
+        if let Ok(instance) = entry.create_instance(&info, None) {
+            instance.destroy_instance(None);
+        }
+    }
+    let told = lock(&messages).drain(..).collect::<Vec<_>>();
+    let mut lines: Vec<String> = Vec::new();
+    for line in told {
+        let line = line.trim_start_matches("error: ").replace('\n', " ");
+        if !lines.contains(&line) {
+            lines.push(line);
+        }
+    }
+    lines
 }
 
 fn messenger_info(messages: &Messages) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {

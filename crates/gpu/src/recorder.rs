@@ -251,7 +251,7 @@ impl Recorder {
         };
         ran.map_err(|(call, source)| match source {
             vk::Result::ERROR_DEVICE_LOST => GpuError::DeviceLost { work: describe(&self.names) },
-            source => GpuError::Call { call, object: "recorder", source },
+            source => GpuError::call(call, "recorder")(source),
         })?;
         let milliseconds = self.timer.read()?;
         self.descriptors.trim()?;

@@ -9,7 +9,7 @@ use crate::field::{Field, Type};
 use crate::filter::Sieve;
 use crate::options::ReadOptions;
 use crate::set::{Attribute, ColorEncoding, PointSet, Values};
-use std::collections::TryReserveError;
+use std::collections::{HashMap, HashSet, TryReserveError};
 use std::path::Path;
 
 /// Names of a position, in any letter case.
@@ -329,11 +329,18 @@ fn triple<'n>(fields: &[Field], names: [&'n str; 3]) -> Result<[usize; 3], &'n s
 
 /// The names of the fields; those that are there before get a number.
 fn distinct_names(fields: &[Field]) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
+    let mut taken: HashSet<String> = HashSet::new();
+    // The last number of each name that came before.
+    let mut numbers: HashMap<&str, u64> = HashMap::new();
+    let mut names = Vec::with_capacity(fields.len());
     for field in fields {
-        let numbered = (2..).map(|number| format!("{}_{number}", field.name));
-        let mut all = std::iter::once(field.name.clone()).chain(numbered);
-        names.extend(all.find(|name| !names.contains(name)));
+        let mut name = field.name.clone();
+        while !taken.insert(name.clone()) {
+            let number = numbers.entry(&field.name).or_insert(1);
+            *number += 1;
+            name = format!("{}_{number}", field.name);
+        }
+        names.push(name);
     }
     names
 }

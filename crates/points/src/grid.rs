@@ -24,6 +24,10 @@ const EDGE_PER_TRUST: f64 = 2.5;
 const CELLS_PER_POINT: f64 = 8.0;
 /// Pairs of cell and point a point, at most, before the exact test; even sets have about six.
 const PAIRS_PER_POINT: f64 = 48.0;
+/// Bytes a point of both, at most: with the 64 of its polynomial, tracing holds 100. Of the pairs before the exact test, so
+/// many are listed.
+const BYTES_PER_POINT: f64 = 36.0;
+const LISTED_PAIRS: f64 = 0.9;
 /// Few points may still have this many cells and pairs.
 const ALWAYS_ALLOWED: f64 = 65_536.0;
 /// Neither cells (8 bytes) nor pairs (4 bytes) may outgrow one binding of 128 MiB, whatever the number of points.
@@ -339,9 +343,20 @@ fn plan_grid(balls: &[Ball], radius: f64, resolution: u32, share: f64) -> GridIn
     let allowed = |per_point: f64, most: f64| {
         (per_point * balls.len() as f64).min(share * most).max(ALWAYS_ALLOWED)
     };
-    while cell_count(extent, edge) > allowed(CELLS_PER_POINT, CELLS_ALLOWED)
-        || pair_count(balls, low, edge) > allowed(PAIRS_PER_POINT, PAIRS_ALLOWED)
-    {
+    let most_bytes = match resolution {
+        0 => (BYTES_PER_POINT * balls.len() as f64).max(8.0 * ALWAYS_ALLOWED),
+        _ => f64::INFINITY,
+    };
+    let is_too_fine = |edge: f64| {
+        let cells = cell_count(extent, edge);
+        if cells > allowed(CELLS_PER_POINT, CELLS_ALLOWED) || 8.0 * cells > most_bytes {
+            return true;
+        }
+        let pairs = pair_count(balls, low, edge);
+        let bytes = 8.0 * cells + 4.0 * LISTED_PAIRS * pairs;
+        pairs > allowed(PAIRS_PER_POINT, PAIRS_ALLOWED) || bytes > most_bytes
+    };
+    while is_too_fine(edge) {
         edge *= 1.1;
         if edge > 2.0 * longest {
             break;

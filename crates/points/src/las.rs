@@ -24,6 +24,8 @@ const HEADER_1_4: u64 = 375;
 /// Bytes before the contents of a variable length record, and of an extended one.
 const VLR_HEADER: u64 = 54;
 const EVLR_HEADER: u64 = 60;
+/// Variable length records that are looked at, of either kind.
+const MAX_RECORDS: u32 = 1 << 12;
 /// Bytes that are read at once, about.
 const BLOCK: usize = 1 << 20;
 
@@ -73,7 +75,7 @@ pub(crate) fn read(
     let extra = records
         .iter()
         .find(|record| record.is("LASF_Spec", extra::RECORD_ID))
-        .map(|record| file.bytes_at(record.place, record.length))
+        .map(|record| file.bytes_at(record.place, record.length.min(extra::MAX_BYTES)))
         .transpose()
         .map_err(io_error)?
         .unwrap_or_default();
@@ -241,7 +243,7 @@ impl Header {
         let plain = (u64::from(self.header_size), self.records, VLR_HEADER, self.data);
         let extended = (self.extended.0, self.extended.1, EVLR_HEADER, file.length());
         for (mut place, count, size, end) in [plain, extended] {
-            for _ in 0..count {
+            for _ in 0..count.min(MAX_RECORDS) {
                 let contents = place.saturating_add(size);
                 if contents > end {
                     break;

@@ -52,7 +52,9 @@ pub fn read_with(
 /// PCD files, which depth cameras write, else y. So it is too where the file cannot be read.
 pub fn usual_up(path: &Path) -> Upwards {
     let mut start = Vec::new();
-    let opened = File::open(path).ok().filter(|file| file.metadata().is_ok_and(|m| m.is_file()));
+    // A pipe that is opened and left is closed to its writer.
+    let is_file = path.metadata().is_ok_and(|metadata| metadata.is_file());
+    let opened = is_file.then(|| File::open(path).ok()).flatten();
     let read = opened.map(|file| file.take(START as u64).read_to_end(&mut start));
     match (read, format::of(&start, path)) {
         (Some(Ok(1..)), Some(format)) => format.usual_up(&start),

@@ -8,7 +8,7 @@ use gpu::{DeviceInfo, DeviceKind};
 
 /// Loop iterations that a ray may spend in one pass, at most. lavapipe silently stops all loops of a shader
 /// group at 65 535 iterations; eight rays share that count there, and each may go 64 over its share.
-pub(crate) const MOST: u32 = 7_000;
+const MOST: u32 = 7_000;
 /// Enough for any ray to get on: two batches of points.
 const LEAST: u32 = 64;
 /// Where a device is not known yet.

@@ -9,7 +9,7 @@ mod in_volumes;
 mod to_the_end;
 
 use crate::RenderError;
-use crate::budget::{Budget, MOST};
+use crate::budget::Budget;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
     AlbedoIo, CameraRays, CameraRaysIo, CameraTrace, CameraTraceIo, Classify, ClassifyIo,
@@ -407,7 +407,8 @@ impl Renderer {
             wave: &self.wave,
             live: &self.live,
         };
-        let traced = plan.camera_trace_of(tile, &self.surfaces.grids, MOST);
+        let work = self.budget.work();
+        let traced = plan.camera_trace_of(tile, &self.surfaces.grids, work);
         self.recorder.fill(&self.live, 0, 4, 0);
         record_no_marks(&mut self.recorder, &self.wave, plan, params);
         self.passes.camera_trace.record(&mut self.recorder, io, &traced);
@@ -418,8 +419,12 @@ impl Renderer {
         stats.passes += 1;
         let mut left = [0];
         self.live.read(0, &mut left)?;
-        self.ends_at_once = left == [0];
-        if self.ends_at_once { Ok(Some(self.read_classes(plan, params)?)) } else { Ok(None) }
+        self.budget.passed(timings.passes.iter().map(|pass| pass.1).sum(), left != [0]);
+        if left == [0] {
+            return Ok(Some(self.read_classes(plan, params)?));
+        }
+        self.ends_at_once = self.budget.work() > work; // with more, they may
+        Ok(None)
     }
 
     /// From what has become of a wave's rays to light and the next wave, whose parameters these are then.

@@ -144,7 +144,12 @@ fn files_exist(document: &Node, scene: &Scene, source: &Source<'_>) -> Result<()
         // A point file rendered directly is looked for where it says, and named by the message already.
         let given = origin == Origin::Given;
         let advice = if given { None } else { models::advice(written, models.as_deref()) };
-        let Some(message) = what_is_missing(file, what, advice) else { return };
+        // What the user names may be a pipe; what a scene names is read more than once.
+        let is_pipe = || file.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir());
+        let Some(message) = what_is_missing(file, what, advice).filter(|_| !given || !is_pipe())
+        else {
+            return;
+        };
         let path = if given { String::new() } else { path };
         problems.push(Problem { origin, path, message });
     };
@@ -183,6 +188,10 @@ pub(crate) fn what_is_missing(
         Ok(meta) if meta.is_dir() => {
             Some(format!("found a folder at '{path}', expected {expected}; name the file"))
         }
+        // It may never end, or wait for a writer that never comes.
+        Ok(meta) if !meta.is_file() => Some(format!(
+            "found a pipe or a device at '{path}', expected {expected}; save it to a file first"
+        )),
         Ok(_) => None,
         Err(error) if error.kind() == io::ErrorKind::NotFound => Some(match advice {
             Some(advice) => format!("found no file at '{path}', {advice}"),

@@ -6,7 +6,7 @@
 
 use crate::{Albedo, ImageFile, Scene};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// The environment variable that names a folder of models.
 pub const MODELS_VARIABLE: &str = "POINTILLIST_MODELS";
@@ -56,7 +56,9 @@ fn below_models(written: &str) -> Option<&Path> {
         path = inner;
     }
     let rest = path.strip_prefix(PREFIX).ok()?;
-    rest.file_name().map(|_| rest)
+    // Nothing outside of the folder of models is one.
+    let stays = rest.components().all(|part| matches!(part, Component::Normal(_)));
+    rest.file_name().filter(|_| stays).map(|_| rest)
 }
 
 fn found(models: &Path, rest: &Path) -> Option<PathBuf> {
@@ -136,6 +138,7 @@ mod tests {
         assert_eq!(advice("../a.ply", None), None);
         assert_eq!(advice("../models/a.ply", None), advice("models/a.ply", None));
         assert_eq!(advice("models", None), None);
+        assert_eq!(advice("models/../a.ply", None), None, "outside of the folder of models");
         for models in [None, Some(Path::new("there"))] {
             let advice = advice("models/a.ply", models).unwrap();
             for word in ["'a.ply'", MODELS_VARIABLE, "tools/fetch-models"] {

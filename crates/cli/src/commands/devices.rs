@@ -29,6 +29,12 @@ pub fn run() -> Result<(), Failure> {
         }
         Err(error) => Some(error),
     };
+    // An error of the list has them already.
+    if !text.is_empty() {
+        for line in Instance::loader_errors() {
+            let _ = writeln!(text, "not usable {line}");
+        }
+    }
     text.push_str(REFERENCE);
     console::result(&text)?;
     error.map_or(Ok(()), |error: GpuError| Err(Failure::no_device(&error)))

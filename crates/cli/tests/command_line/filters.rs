@@ -189,3 +189,43 @@ fn survey_coordinates_are_exact_to_the_micrometre() {
     let most = differences.into_iter().fold(0.0, f32::max);
     assert!(most < 1e-6 * 4.0, "{most}");
 }
+
+/// A LAS file of one point is 247 bytes; z is up in it, so the camera's up is z.
+#[test]
+fn the_way_up_is_that_of_the_format() {
+    let folder = Folder::new();
+    let mut las = vec![0u8; 227];
+    las[..4].copy_from_slice(b"LASF");
+    las[24..26].copy_from_slice(&[1, 2]);
+    las[94..96].copy_from_slice(&227u16.to_le_bytes());
+    las[96..100].copy_from_slice(&227u32.to_le_bytes());
+    las[105..107].copy_from_slice(&20u16.to_le_bytes());
+    las[107..111].copy_from_slice(&300u32.to_le_bytes());
+    for axis in 0..3 {
+        las[131 + 8 * axis..139 + 8 * axis].copy_from_slice(&0.01f64.to_le_bytes());
+    }
+    for i in 0..300i32 {
+        let place = [i % 20 * 10, i / 20 * 10, i % 7];
+        las.extend(place.iter().flat_map(|number| number.to_le_bytes()));
+        las.extend([0; 8]);
+    }
+    std::fs::write(folder.path().join("a.las"), las).expect("the folder can be written to");
+    let points: String = (0..300).map(|i| format!("{} {} 1\n", i % 20, i / 20)).collect();
+    let header =
+        "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 20\nHEIGHT 15\nDATA ascii\n";
+    folder.write("a.pcd", &format!("{header}{points}"));
+    folder.write("b.pcd", &format!("{header}{points}").replace("WIDTH 20\nHEIGHT 15", "WIDTH 300"));
+    for (file, options, up) in [
+        ("a.las", &[][..], "up = [0.0, 0.0, 1.0]"),
+        ("a.las", &["--up", "y"], "up = [0.0, 1.0, 0.0]"),
+        ("a.pcd", &[], "up = [0.0, -1.0, 0.0]"),
+        ("b.pcd", &[], "up = [0.0, 1.0, 0.0]"),
+        ("b.pcd", &["--up", "-y"], "up = [0.0, -1.0, 0.0]"),
+    ] {
+        let small = [file, "-o", "a.exr", "--size", "32x24"];
+        render(&folder, &[&small[..], options].concat()).succeeds();
+        let exr = film::read_exr(&folder.path().join("a.exr")).expect("an EXR");
+        let scene = exr.strings.get("pointillist/scene").expect("the scene");
+        assert!(scene.contains(up), "{file} {options:?}: {scene}");
+    }
+}

@@ -1,14 +1,20 @@
-//! The binary from outside: what it prints, writes and exits with. No Vulkan device is needed.
+//! The binary from outside: what it prints, writes and exits with. `drivers`, `faults`, `signals` and `twins` need a
+//! Vulkan device, the others none.
 #![forbid(unsafe_code)]
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod bench;
 mod compare;
+mod disk;
+mod drivers;
+mod faults;
 mod filters;
 mod headers;
+mod inputs;
 mod inspect;
 mod render;
 mod signals;
+mod twins;
 mod usage;
 
 use std::ffi::OsStr;

@@ -252,7 +252,7 @@ fn a_file_that_cannot_be_finished_is_named_as_typed_and_leaves_nothing() {
         );
         let mut shell = std::process::Command::new("sh");
         let ran = Ran::of(shell.current_dir(folder.path()).args(["-c", &render]));
-        let ran = ran.fails_with(2, &["error: a.", "cannot write the file"]);
+        let ran = ran.fails_with(4, &["error: a.", "cannot write the file", "ulimit -f"]);
         assert!(!ran.stderr.contains(".pointillist-"), "{}", ran.stderr);
     }
     assert_eq!(folder.names(), ["ball.ply", "no.png"]);

@@ -6,6 +6,8 @@ use crate::field::{Field, Type};
 pub(super) const RECORD_ID: u16 = 4;
 /// Bytes of a description.
 const DESCRIPTION: usize = 192;
+/// Bytes of all descriptions that are read.
+pub(super) const MAX_BYTES: u64 = 1 << 20;
 
 /// Bits of a description's options.
 const HAS_SCALE: u8 = 1 << 3;

@@ -3,6 +3,7 @@
 use crate::error::{PointsError, Quoted};
 use crate::field::Type;
 use crate::source::{Line, Source};
+use std::collections::HashSet;
 use std::path::Path;
 
 /// Longest line of a header.
@@ -125,6 +126,8 @@ pub(super) fn read(source: &mut Source<'_>, path: &Path) -> Result<Header, Point
 
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
+    // Of elements, and of the last one's properties.
+    let (mut element_names, mut names) = (HashSet::new(), HashSet::new());
     for number in 1..=MAX_LINES {
         let wrong = |found: String, expected: &str| PointsError::Line {
             path: path.into(),
@@ -174,9 +177,10 @@ pub(super) fn read(source: &mut Source<'_>, path: &Path) -> Result<Header, Point
                     .ok_or_else(|| wrong(quoted(), expected))?;
                 let count = count.parse().map_err(|_| wrong(quoted(), expected))?;
                 let name = name.trim().to_owned();
-                if elements.iter().any(|element| element.name == name) {
+                if !element_names.insert(name.clone()) {
                     return Err(wrong(format!("a second element '{name}'"), "names that differ"));
                 }
+                names.clear();
                 elements.push(Element { name, count, properties: Vec::new() });
             }
             "property" => {
@@ -185,7 +189,7 @@ pub(super) fn read(source: &mut Source<'_>, path: &Path) -> Result<Header, Point
                 let Some(element) = elements.last_mut() else {
                     return Err(wrong(quoted(), "an 'element' before its properties"));
                 };
-                if element.properties.iter().any(|other| other.name == property.name) {
+                if !names.insert(property.name.clone()) {
                     let found = format!("a second property '{}'", property.name);
                     return Err(wrong(found, "names that differ"));
                 }
