@@ -256,15 +256,8 @@ impl<'f> SideBySide<'f> {
         for (array, block) in self.arrays.iter_mut().zip(&mut self.blocks) {
             block.resize(self.there * array.width, 0.0);
             let found = array.numbers.next(block).map_err(|error| match error.kind() {
-                io::ErrorKind::InvalidData => PointsError::wrong(
-                    self.path,
-                    &format!("the data of '{}'", printable(&array.name)),
-                    &error,
-                    "what the header says",
-                    "the file is damaged: copy or export it again",
-                ),
                 io::ErrorKind::UnexpectedEof => cut_off(self.path, array, self.points, self.before),
-                _ => PointsError::Io { path: self.path.into(), source: error },
+                _ => data_error(self.path, &array.name, error),
             })?;
             if found < block.len() {
                 let whole = (found / array.width) as u64;
@@ -302,6 +295,21 @@ impl<'f> SideBySide<'f> {
             self.advance()?;
         }
         Ok(())
+    }
+}
+
+/// What is wrong with the bytes of an array: they are damaged, or cannot be read.
+pub(crate) fn data_error(path: &Path, name: &str, error: io::Error) -> PointsError {
+    use io::ErrorKind::{InvalidData, InvalidInput, UnexpectedEof};
+    match error.kind() {
+        InvalidData | InvalidInput | UnexpectedEof => PointsError::wrong(
+            path,
+            &format!("the data of '{}'", printable(name)),
+            error,
+            "what the header says",
+            "the file is damaged: copy or export it again",
+        ),
+        _ => PointsError::Io { path: path.into(), source: error },
     }
 }
 

@@ -9,7 +9,7 @@ mod header;
 mod literal;
 
 use crate::collect::Collector;
-use crate::columns::{Array, Part, Place, Records, Shared, SideBySide};
+use crate::columns::{Array, Part, Place, Records, Shared, SideBySide, data_error};
 use crate::error::PointsError;
 use crate::field::{Field, Type};
 use crate::meaning;
@@ -56,11 +56,12 @@ impl Trouble {
         Self::Header { found: found.into(), expected: expected.into() }
     }
 
-    /// `of` says whose header it is: nothing, or ` of 'a.npy'`.
-    fn at(self, path: &Path, of: &str) -> PointsError {
+    /// `name` is that of the array in its archive, if it is in one.
+    fn at(self, path: &Path, name: Option<&str>) -> PointsError {
         match self {
-            Self::Io(source) => PointsError::Io { path: path.into(), source },
+            Self::Io(error) => data_error(path, name.unwrap_or("the header"), error),
             Self::Header { found, expected } => {
+                let of = name.map_or_else(String::new, |name| format!(" of '{name}'"));
                 PointsError::wrong(path, &format!("the NumPy header{of}"), found, &expected, HELP)
             }
         }
@@ -79,11 +80,11 @@ pub(crate) fn read(
     let open = |place: u64| -> io::Result<Box<dyn Read + '_>> {
         Ok(Box::new(Part::new(&file, place, u64::MAX).buffered()))
     };
-    let header = Header::read(&mut open(0).map_err(io_error)?).map_err(|e| e.at(path, ""))?;
-    let rows = Rows::of(&header).map_err(|e| e.at(path, ""))?;
+    let header = Header::read(&mut open(0).map_err(io_error)?).map_err(|e| e.at(path, None))?;
+    let rows = Rows::of(&header).map_err(|e| e.at(path, None))?;
     if !header.record.has_names && rows.names.len() < 3 {
         let found = format!("the shape {}", header.shape_in_words());
-        return Err(Trouble::header(found, "(n, 3), or more columns").at(path, ""));
+        return Err(Trouble::header(found, "(n, 3), or more columns").at(path, None));
     }
     let left = file.borrow().length().saturating_sub(header.length);
     let point_size = rows.point_size(&header);

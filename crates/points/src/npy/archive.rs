@@ -1,7 +1,7 @@
 //! `.npz` archives: the array of positions, and all others of its length.
 
 use crate::collect::Collector;
-use crate::columns::{Part, Shared, SideBySide, check_expansion, fill};
+use crate::columns::{Part, Shared, SideBySide, check_expansion, data_error, fill};
 use crate::error::PointsError;
 use crate::field::Type;
 use crate::meaning;
@@ -112,8 +112,8 @@ pub(crate) fn read(
     let mut entries = Vec::new();
     let mut left_out = Vec::new();
     for member in &members {
-        let of = format!(" of '{}'", member.name);
-        let header = Header::read(&mut member.open(&file)).map_err(|e| e.at(path, &of))?;
+        let header =
+            Header::read(&mut member.open(&file)).map_err(|e| e.at(path, Some(&member.name)))?;
         // What has a shape of no points is of no use.
         match Rows::of(&header) {
             Ok(rows) => entries.push(Entry { member, header, rows }),
@@ -169,7 +169,8 @@ pub(crate) fn read(
         names.extend(entry.names(chosen));
         kinds.extend(rows.kinds());
         let open = |place: u64| member.open_at(&file, place, header);
-        arrays.extend(rows.arrays(header, &member.name, &open).map_err(io_error)?);
+        let opened = rows.arrays(header, &member.name, &open);
+        arrays.extend(opened.map_err(|error| data_error(path, &member.name, error))?);
     }
     let table = SideBySide::new(arrays, points, path)?;
     let fields = named_fields(&names, &kinds, &table);

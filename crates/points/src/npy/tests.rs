@@ -303,6 +303,10 @@ fn what_is_wrong_with_an_archive_is_named() {
     damaged[place] ^= 1;
     let found = message(&damaged);
     assert!(found.contains("found bytes whose checksum is not the archive's as the data of 'xyz'"));
+    let mut damaged = npz(&[("xyz", xyz.clone())], true);
+    damaged[45] ^= 0xff;
+    let found = message(&damaged);
+    assert!(found.contains("as the data of 'xyz', expected what the header says"), "{found}");
     let cut = &npz(&[("xyz", xyz)], true)[..100];
     assert!(message(cut).contains("as the archive's directory, expected that of a zip archive"));
 }
@@ -325,4 +329,41 @@ fn columns_that_take_long_to_unpack_are_refused() {
     let few = npy("'<f8'", true, "(4000, 3)", &vec![0; 96_000]);
     assert_eq!(read(&npz(&[("xyz", few)], true)).len(), 4000);
     assert_eq!(read(&npz(&[("xyz", xyz), ("a", zeros)], false)).len(), 4000);
+}
+
+#[test]
+fn odd_archives_are_refused_or_read() {
+    let xyz = npy("'<f4'", false, "(2, 3)", &f4(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
+    let whole = npz(&[("xyz", xyz.clone())], false);
+    let directory = whole.windows(4).position(|four| four == b"PK\x01\x02").unwrap();
+    let patched = |local: usize, bytes: &[u8]| {
+        let mut file = whole.clone();
+        for place in [local, directory + local + 2] {
+            file[place..place + bytes.len()].copy_from_slice(bytes);
+        }
+        file
+    };
+    let many: Vec<String> = (0..1001).map(|number| number.to_string()).collect();
+    let many: Vec<_> = many.iter().map(|name| (name.as_str(), Vec::new())).collect();
+    for (file, expected) in [
+        (patched(8, &12u16.to_le_bytes()), "as the packing of 'xyz', expected store or deflate"),
+        (
+            patched(6, &1u16.to_le_bytes()),
+            "found encryption as the packing of 'xyz', expected none",
+        ),
+        // Lengths that the file does not have.
+        (patched(18, &[0xff; 4]), ""),
+        (patched(22, &1000u32.to_le_bytes()), ""),
+        (patched(22, &100u32.to_le_bytes()), "checksum is not the archive's as the data of 'xyz'"),
+        (patched(22, &140u32.to_le_bytes()), "declares 2 values of 'xyz' needing 24 bytes"),
+        (npz(&[("a\nb", xyz.clone()), ("c", xyz.clone())], false), "('a_b' (2, 3), 'c' (2, 3))"),
+        (npz(&vec![("a", xyz.clone()); 3], false), ""),
+        (npz(&many, false), "found 1001 entries as the archive's directory, expected at most 1000"),
+        (b"PK\x05\x06".iter().copied().chain([0; 18]).collect(), "among the arrays (none)"),
+    ] {
+        match try_read(&file) {
+            Ok(set) => assert!(expected.is_empty() && set.len() == 2, "{expected}"),
+            Err(error) => assert!(error.to_string().contains(expected), "{expected}: {error}"),
+        }
+    }
 }
