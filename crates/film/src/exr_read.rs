@@ -8,7 +8,9 @@ use crate::error::FilmError;
 use crate::exr_header::{COMPRESSIONS, COMPRESSIONS_READ, ExrHeader, read_exr_headers};
 use crate::plausible::too_short_for;
 use exr::image::Image;
+use exr::meta::MetaData;
 use exr::meta::attribute::{IntegerBounds, Text};
+use exr::meta::header::Header;
 use exr::prelude::{AnyChannels, FlatSamples, Layers, ReadChannels, ReadLayers, Vec2, read};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -166,6 +168,7 @@ pub fn read_exr(path: &Path) -> Result<ExrPicture, FilmError> {
 pub fn read_exr_file(path: &Path) -> Result<ExrFile, FilmError> {
     let headers = read_exr_headers(path)?;
     check_readable(path, &headers)?;
+    check_sizes(path)?;
     let file = File::open(path).map_err(|source| FilmError::Read { path: path.into(), source })?;
     let image: Image<Layers<AnyChannels<FlatSamples>>> = read()
         .no_deep_data()
@@ -174,19 +177,7 @@ pub fn read_exr_file(path: &Path) -> Result<ExrFile, FilmError> {
         .all_layers()
         .all_attributes()
         .from_buffered(BufReader::new(file))
-        .map_err(|error| match error {
-            exr::error::Error::Io(source) if source.kind() == ErrorKind::UnexpectedEof => {
-                not_exr(path, "found a file that is cut off")
-            }
-            exr::error::Error::Io(source) => FilmError::Read { path: path.into(), source },
-            exr::error::Error::Invalid(reason) => {
-                not_exr(path, &format!("found a damaged file or one that is cut off ({reason})"))
-            }
-            exr::error::Error::NotSupported(reason) => {
-                not_exr(path, &format!("found what is not read here ({reason})"))
-            }
-            exr::error::Error::Aborted => not_exr(path, "reading was aborted"),
-        })?;
+        .map_err(|error| exr_error(path, error))?;
     let parts = image.layer_data.into_iter().zip(headers).map(|(layer, header)| ExrPart {
         name: layer.attributes.layer_name.as_ref().map(utf8),
         data_origin: [layer.attributes.layer_position.0, layer.attributes.layer_position.1],
@@ -254,6 +245,40 @@ fn check_readable(path: &Path, headers: &[ExrHeader]) -> Result<(), FilmError> {
     match too_short_for(bytes, path).map_err(read_error)? {
         Some(reason) => Err(not_exr(path, &reason)),
         None => Ok(()),
+    }
+}
+
+/// The same as the crate `exr` sees it: in a damaged header it may find other sizes, and it takes memory for those.
+fn check_sizes(path: &Path) -> Result<(), FilmError> {
+    let meta = MetaData::read_from_file(path, false).map_err(|error| exr_error(path, error))?;
+    let bytes_of = |header: &Header| {
+        let pixel: usize =
+            header.channels.list.iter().map(|channel| channel.sample_type.bytes_per_sample()).sum();
+        let Vec2(width, height) = header.layer_size;
+        (width as u64).saturating_mul(height as u64).saturating_mul(pixel as u64)
+    };
+    let bytes = meta.headers.iter().map(bytes_of).fold(0, u64::saturating_add);
+    match too_short_for(bytes, path)
+        .map_err(|source| FilmError::Read { path: path.into(), source })?
+    {
+        Some(reason) => Err(not_exr(path, &reason)),
+        None => Ok(()),
+    }
+}
+
+fn exr_error(path: &Path, error: exr::error::Error) -> FilmError {
+    match error {
+        exr::error::Error::Io(source) if source.kind() == ErrorKind::UnexpectedEof => {
+            not_exr(path, "found a file that is cut off")
+        }
+        exr::error::Error::Io(source) => FilmError::Read { path: path.into(), source },
+        exr::error::Error::Invalid(reason) => {
+            not_exr(path, &format!("found a damaged file or one that is cut off ({reason})"))
+        }
+        exr::error::Error::NotSupported(reason) => {
+            not_exr(path, &format!("found what is not read here ({reason})"))
+        }
+        exr::error::Error::Aborted => not_exr(path, "reading was aborted"),
     }
 }
 

@@ -92,6 +92,16 @@ fn sizes_without_bytes_for_them_are_errors_before_memory_is_taken() {
     }
 }
 
+/// Found by fuzzing: what reads the pixels finds other sizes in this damaged header than what reads the header.
+#[test]
+fn a_header_that_is_read_in_two_ways_takes_no_memory_either() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    fs::write(&path, include_bytes!("../tests/two-ways.exr")).unwrap();
+    let message = read_image(&path).unwrap_err().to_string();
+    assert!(message.contains("announces"), "{message}");
+}
+
 #[test]
 fn files_that_are_no_image_are_errors() {
     let folder = tempfile::tempdir().unwrap();
