@@ -39,7 +39,7 @@ impl Scene {
     }
 
     /// The scene that a point file rendered directly means: one object with defaults, no camera
-    /// (the renderer frames it), a key light and a dim fill light, a grey background. `overrides`
+    /// (the renderer frames it), a key light, a dimmer one from the camera, a grey background. `overrides`
     /// apply as in [`Scene::load`], with paths relative to the working directory.
     pub fn for_point_file(
         points: &Path,
@@ -209,11 +209,12 @@ pub(crate) fn what_is_missing(
 /// As TOML, so that overrides and checks work on it as on any scene.
 fn point_file_document(points: &Path, up: Up) -> Node {
     // Turned from y up by a quarter turn about x, (x, y, z) to (x, -z, y), or by half a turn, to
-    // (x, -y, -z).
+    // (x, -y, -z). The fill light comes from where the renderer puts the camera: its shadows are not seen, and those
+    // of the key light are not black.
     let [key, fill] = match up {
-        Up::Y => ["[-0.5, -1.0, -0.6]", "[0.8, -0.1, -0.6]"],
-        Up::Z => ["[-0.5, 0.6, -1.0]", "[0.8, 0.6, -0.1]"],
-        Up::MinusY => ["[-0.5, 1.0, 0.6]", "[0.8, 0.1, 0.6]"],
+        Up::Y => ["[-0.5, -1.0, -0.6]", "[-0.45, -0.35, -1.0]"],
+        Up::Z => ["[-0.5, 0.6, -1.0]", "[-0.45, 1.0, -0.35]"],
+        Up::MinusY => ["[-0.5, 1.0, 0.6]", "[-0.45, 0.35, 1.0]"],
     };
     let text = format!(
         "{{ background = {{ color = [0.18, 0.18, 0.18] }}, lights = [\
