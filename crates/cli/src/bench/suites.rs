@@ -238,14 +238,14 @@ mod tests {
     #[test]
     fn known_suites_say_what_they_measure() {
         let suites = known();
-        for name in ["cells-per-pass", "paper", "ruler", "scaling", "smoke"] {
+        for name in ["cells-per-pass", "landscape", "paper", "ruler", "scaling", "smoke"] {
             let about = suites.iter().find(|suite| suite.0 == name).map(|suite| suite.1.as_str());
             assert!(about.is_some_and(|about| !about.is_empty()), "{name}: {suites:?}");
         }
         let failure = unknown("papr");
         assert!(failure.lines[0].contains("did you mean 'paper'?"), "{failure:?}");
         assert!(
-            failure.lines[0].contains("cells-per-pass, paper, ruler, scaling, smoke"),
+            failure.lines[0].contains("cells-per-pass, landscape, paper, ruler, scaling, smoke"),
             "{failure:?}"
         );
     }
