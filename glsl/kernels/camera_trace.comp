@@ -1,7 +1,7 @@
-// camera_trace: camera_rays, disc_trace, surface_hit and classify in one, for rays from the eye through the centres
+// camera_trace: camera_rays, disc_trace or with TREE tree_trace, surface_hit and classify in one, for rays from the eye through the centres
 // of pixels that nothing but surfaces meets (section 4 of the paper).
 //
-// reads   polynomials, the lists of screen tiles, objects
+// reads   polynomials, objects, the lists of screen tiles; with TREE nodes
 //         grid, cells, slots   the polynomials around a hit, where normals are blended
 //         images, texels   the environment
 // writes  film             every pixel
@@ -20,7 +20,11 @@
 #define LISTS
 #define STATE_WRITES
 #include "layout.glsl"
+#ifdef TREE
+#include "tree_walk.glsl"
+#else
 #include "disc_walk.glsl"
+#endif
 #include "environment.glsl"
 #include "levels.glsl"
 #include "index.glsl"
@@ -43,9 +47,15 @@ void main() {
     bool outside = any(greaterThanEqual(pixel, params.tile_size));
     vec3 d = camera_direction(place_in_view(params.tile_origin + pixel, vec2(0.0)));
     Ray ray = new_ray(params.eye, d, outside ? NONE : enter_scene(params.eye, d), NONE);
+#ifdef TREE
+    TreePlace place = before_root();
+    bool alive = walk_tree(ray, place, params.tree, params.work, false, NONE);
+#else
     uvec2 tile = pixel / uint(DISC_TILE);
     walk_discs(ray, disc_range_of(tile.y * screen_tiles(params.tile_size).x + tile.x), params.ranks, params.work);
-    if (ray.cell != NONE) atomicAdd(live, 1u);
+    bool alive = ray.cell != NONE;
+#endif
+    if (alive) atomicAdd(live, 1u);
     if (outside) return;
 
     bool found = ray.hit_slot != NONE;

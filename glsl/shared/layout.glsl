@@ -201,6 +201,9 @@
 #define WAVE_SCATTERING 49
 #define WAVE_NEXT_MARKS 50
 #define LIST_IN 51
+#define TRACE_NODES 52
+#define TREE_BOXES 53
+#define TREE_NODES 54
 #define SHADE_IMAGES 30
 #define SHADE_TEXELS 31
 
@@ -402,6 +405,32 @@ struct TraceParams {     // 24 bytes
     uint passed;         // 20  object whose surface is not there, or NONE
 };
 
+// Some nodes of one level of the tree.
+struct TreeLevelParams { // 24 bytes
+    uint first;          //  0  of these nodes
+    uint count;          //  4  of these nodes
+    uint first_of_level; //  8  of the whole level
+    uint first_child;    // 12  the first node of the level below
+    uint children;       // 16  nodes of the level below; of leaves, points
+    uint first_bound;    // 20  the node that what is bound of all begins with
+};
+
+// Where the leaves of the tree are.
+struct TreeInfo {        // 8 bytes
+    uint first_leaf;     //  0  their first node, a power of eight
+    uint gap;            //  4  so many nodes before it are not there, nor in memory
+};
+
+struct TreeTraceParams { // 32 bytes
+    uint ray_count;      //  0  these as in TraceParams
+    uint work;           //  4
+    uint any_hit;        //  8
+    uint listed;         // 12
+    uint passed;         // 16
+    uint starts;         // 20  1: rays are at the root
+    TreeInfo tree;       // 24
+};
+
 // Distances between nearest and farthest, ranked by their bits.
 struct DepthRanks {      // 16 bytes
     float nearest;       //  0  > 0
@@ -429,7 +458,7 @@ struct BackgroundInfo {  // 16 bytes
     uint environment;    // 12  an image, or NONE: color counts
 };
 
-struct CameraTraceParams { // 120 bytes
+struct CameraTraceParams { // 128 bytes
     vec3 eye;            //  0  these as in CameraParams
     float scale;         // 12
     vec3 right;          // 16
@@ -444,6 +473,7 @@ struct CameraTraceParams { // 120 bytes
     DepthRanks ranks;    // 96
     uint transparent;    // 112 TRANSPARENT_*, or 0: nothing leaves the background out
     uint max_bounces;    // 116
+    TreeInfo tree;       // 120 with TREE; else ranks counts
 };
 
 // Where light is asked for.

@@ -120,7 +120,7 @@ fn degenerate_sets_are_the_same_to_the_bit() {
 /// More pairs of cell and point than one row of a dispatch has invocations.
 #[test]
 fn lists_longer_than_a_row_of_a_dispatch_are_the_same_to_the_bit() {
-    let large = check("large", "[image]\nsize = [96, 64]", fibonacci_sphere(260_000));
+    let large = check("large", "[image]\nsize = [96, 64]", fibonacci_sphere(300_000));
     assert!(large.slots.len() > 1 << 20, "{} pairs", large.slots.len());
 }
 
@@ -226,7 +226,7 @@ fn every_k_gives_the_same_bytes() {
 #[test]
 fn a_cell_with_too_many_points_for_one_pass_is_finished_in_the_next() {
     let mut plan = plan_of(
-        "[image]\nsize = [24, 16]\n[render]\ngrid_resolution = 1\n[[objects]]\npoints = \"s.ply\"\n\
+        "[image]\nsize = [24, 16]\n[render]\ngrid_resolution = 1\nprimary = \"grid\"\nsecondary = \"grid\"\n[[objects]]\npoints = \"s.ply\"\n\
          surface = { normals = \"polynomial\" }",
         &[set_of(fibonacci_sphere(300_000))],
     );

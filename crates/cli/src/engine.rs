@@ -9,6 +9,7 @@ use gpu::{Device, DeviceChoice, Instance, InstanceOptions};
 use kernels::layout::FitOutcome;
 use plan::{Picture, Plan, Rays};
 use points::Grids;
+use points::device::Tree;
 use reference::Reference;
 use render::{RayLoop, Renderer, Traversal};
 use std::sync::Arc;
@@ -195,12 +196,23 @@ impl Built {
         }
     }
 
-    /// Where the grids lie.
-    pub fn grids(&self) -> &Grids {
+    /// Where the grids lie, if they list anything.
+    pub fn grids(&self) -> Option<&Grids> {
         match &self.surfaces {
-            BuiltOn::Gpu(renderer) => &renderer.surfaces().grids,
-            BuiltOn::Single(reference) => &reference.grids,
-            BuiltOn::Double(reference) => &reference.grids,
+            BuiltOn::Gpu(renderer) => {
+                let surfaces = renderer.surfaces();
+                surfaces.is_listed.then_some(&surfaces.grids)
+            }
+            BuiltOn::Single(reference) => Some(&reference.grids),
+            BuiltOn::Double(reference) => Some(&reference.grids),
+        }
+    }
+
+    /// The tree, if there is one; the CPU goes through the grid.
+    pub fn tree(&self) -> Option<&Tree> {
+        match &self.surfaces {
+            BuiltOn::Gpu(renderer) => renderer.surfaces().tree.as_ref(),
+            BuiltOn::Single(_) | BuiltOn::Double(_) => None,
         }
     }
 

@@ -52,6 +52,8 @@ pub struct Row {
     pub cells_per_pass: u32,
     /// How camera rays found their first hit, as `render.primary` has it: what the scene asked for, or was chosen.
     pub primary: &'static str,
+    /// How all other rays found theirs, as `render.secondary` has it.
+    pub secondary: &'static str,
     /// Where the ray state lived, as `render.loop` has it; `null` on the CPU reference.
     #[serde(rename = "loop")]
     pub ray_loop: Option<&'static str>,
@@ -75,8 +77,11 @@ pub struct Row {
     pub filtered_out: u64,
     /// How the fits ended.
     pub fits: Fits,
-    /// The grids, the finest first: one, or several where sizes of trust balls differ.
+    /// The grids, the finest first: one, or several where sizes of trust balls differ; none where no ray goes through
+    /// one, and nothing is looked up in it.
     pub grids: Vec<Grid>,
+    /// The tree, if any ray goes through it.
+    pub tree: Option<Tree>,
     /// Milliseconds of each kernel in the last frame.
     pub kernels: BTreeMap<&'static str, f64>,
     /// Pixels that hit a surface.
@@ -147,6 +152,13 @@ pub struct Grid {
     pub cells: u32,
 }
 
+/// The boxes in boxes around the surfaces of points.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+pub struct Tree {
+    /// Boxes around eight others, or around the surfaces of eight points.
+    pub nodes: u64,
+}
+
 /// The frames that were timed, and all that they had in common.
 pub struct Measured<'a> {
     /// Stem of the scene's file.
@@ -205,10 +217,14 @@ impl Row {
             rays,
             rays_per_second: RaysPerSecond::new(&rays, trace_ms.median, &frame.traversal),
             cells_per_pass: plan.cells_per_pass,
-            primary: if plan.tiles().iter().any(|tile| plan.by_discs(tile)) {
-                "discs"
-            } else {
-                "grid"
+            primary: match built.tree() {
+                _ if plan.tiles().iter().any(|tile| plan.by_discs(tile)) => "discs",
+                Some(_) if plan.camera_by_tree() => "tree",
+                _ => "grid",
+            },
+            secondary: match built.tree() {
+                Some(_) if plan.by_tree() => "tree",
+                _ => "grid",
             },
             ray_loop: built.ray_loop(),
             passes: frame.passes,
@@ -221,7 +237,8 @@ impl Row {
             dropped: measured.dropped,
             filtered_out: measured.filtered_out,
             fits: Fits::of(built),
-            grids: built.grids().levels.iter().map(grid_of).collect(),
+            grids: built.grids().into_iter().flat_map(|grids| &grids.levels).map(grid_of).collect(),
+            tree: built.tree().map(|tree| Tree { nodes: tree.node_count() }),
             kernels: frame.kernels.iter().copied().collect(),
             hits: frame.hits,
             origin: plan.cloud.origin,

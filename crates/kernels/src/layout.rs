@@ -280,6 +280,12 @@ constants! {
     WAVE_NEXT_MARKS = 50;
     /// Binding of `list_marked`: the rays whose marks these are, where they are listed.
     LIST_IN = 51;
+    /// Binding of the kernels that go through the tree: its nodes.
+    TRACE_NODES = 52;
+    /// Binding of `tree_nodes`: [`SearchNode`]s, the boxes around the nodes.
+    TREE_BOXES = 53;
+    /// Binding of `tree_nodes`: the nodes.
+    TREE_NODES = 54;
     /// [`WaveParams::flags`]: rays come from the camera.
     WAVE_FROM_CAMERA = 1;
     /// [`WaveParams::flags`]: all rays have the camera's path, but for the pixel.
@@ -767,6 +773,61 @@ gpu_layout!(TraceParams, 24, {
     ray_count: 0, cells: 4, work: 8, any_hit: 12, listed: 16, passed: 20,
 });
 
+/// Push constants of `tree_nodes`: some nodes of one level of the tree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct TreeLevelParams {
+    /// Of these nodes.
+    pub first: u32,
+    /// Of these nodes.
+    pub count: u32,
+    /// Of the whole level.
+    pub first_of_level: u32,
+    /// The first node of the level below.
+    pub first_child: u32,
+    /// Nodes of the level below; of leaves, points.
+    pub children: u32,
+    /// The node that what is bound of all begins with.
+    pub first_bound: u32,
+}
+gpu_layout!(TreeLevelParams, 24, {
+    first: 0, count: 4, first_of_level: 8, first_child: 12, children: 16, first_bound: 20,
+});
+
+/// Where the leaves of the tree are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct TreeInfo {
+    /// Their first node, a power of eight.
+    pub first_leaf: u32,
+    /// So many nodes before it are not there, nor in memory.
+    pub gap: u32,
+}
+gpu_layout!(TreeInfo, 8, { first_leaf: 0, gap: 4 });
+
+/// Push constants of `tree_trace`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct TreeTraceParams {
+    /// As in [`TraceParams`].
+    pub ray_count: u32,
+    /// As in [`TraceParams`].
+    pub work: u32,
+    /// As in [`TraceParams`].
+    pub any_hit: u32,
+    /// As in [`TraceParams`].
+    pub listed: u32,
+    /// As in [`TraceParams`].
+    pub passed: u32,
+    /// 1: rays are at the root.
+    pub starts: u32,
+    /// The tree's.
+    pub tree: TreeInfo,
+}
+gpu_layout!(TreeTraceParams, 32, {
+    ray_count: 0, work: 4, any_hit: 8, listed: 12, passed: 16, starts: 20, tree: 24,
+});
+
 /// Distances between nearest and farthest, ranked by their bits.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -853,11 +914,13 @@ pub struct CameraTraceParams {
     pub transparent: u32,
     /// Interactions after the primary hit.
     pub max_bounces: u32,
+    /// The tree's, where rays go through it.
+    pub tree: TreeInfo,
 }
-gpu_layout!(CameraTraceParams, 120, {
+gpu_layout!(CameraTraceParams, 128, {
     eye: 0, scale: 12, right: 16, half_width: 28, up: 32, half_height: 44, forward: 48, work: 60,
     tile_origin: 64, tile_size: 72, background: 80, ranks: 96, transparent: 112,
-    max_bounces: 116,
+    max_bounces: 116, tree: 120,
 });
 
 /// A hit on a diffuse surface, where light is asked for.
@@ -1336,6 +1399,9 @@ pub const STRUCTS: &[StructLayout] = &[
     Rim::LAYOUT,
     SearchNode::LAYOUT,
     LevelParams::LAYOUT,
+    TreeLevelParams::LAYOUT,
+    TreeInfo::LAYOUT,
+    TreeTraceParams::LAYOUT,
     SearchParams::LAYOUT,
     SmoothParams::LAYOUT,
     BallClip::LAYOUT,

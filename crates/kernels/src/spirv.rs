@@ -38,6 +38,8 @@ modules! {
     camera_rays_queue,
     /// The first wave from the eye to the film, where rays of a queue need none.
     camera_trace,
+    /// `camera_trace` through the tree.
+    camera_trace_tree,
     /// Where each cell's entries begin.
     cell_offsets,
     /// What becomes of each ray of a wave.
@@ -184,6 +186,14 @@ modules! {
     surface_hit,
     /// `surface_hit` for rays in a queue.
     surface_hit_queue,
+    /// The same as `tree_nodes`, around the surfaces of points.
+    tree_leaves,
+    /// Nodes of one level of the tree.
+    tree_nodes,
+    /// One pass of the traversal of the tree.
+    tree_trace,
+    /// `tree_trace` for rays that start on surfaces.
+    tree_trace_leaving,
 }
 
 /// Modules made of another kernel's source with macros defined: name, kernel, macros.
@@ -191,6 +201,7 @@ pub const VARIANTS: &[(&str, &str, &[&str])] = &[
     ("bound_reach_texels", "bound_reach", &["POINTS_AS_TEXELS"]),
     ("bound_reach_texels_few", "bound_reach", &["POINTS_AS_TEXELS", "FEW"]),
     ("camera_rays_queue", "camera_rays", &["QUEUE"]),
+    ("camera_trace_tree", "camera_trace", &["TREE"]),
     ("classify_queue", "classify", &["QUEUE"]),
     ("disc_count_queue", "disc_count", &["QUEUE"]),
     ("disc_emit_queue", "disc_emit", &["QUEUE"]),
@@ -226,6 +237,8 @@ pub const VARIANTS: &[(&str, &str, &[&str])] = &[
     ("shadow_rays_queue", "shadow_rays", &["QUEUE"]),
     ("smooth_sizes_texels", "smooth_sizes", &["POINTS_AS_TEXELS"]),
     ("surface_hit_queue", "surface_hit", &["QUEUE"]),
+    ("tree_leaves", "tree_nodes", &["LEAVES"]),
+    ("tree_trace_leaving", "tree_trace", &["LEAVES"]),
 ];
 
 /// The kernel whose source a module is made of, and the macros it is compiled with.

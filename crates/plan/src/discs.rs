@@ -1,8 +1,8 @@
 //! Primary rays by discs (\[T\] §4): when, and how the points of a screen tile are ordered.
 
-use crate::{Diagnostic, Plan, Primary, Window};
+use crate::{Diagnostic, Plan, Primary, RayLoop, Secondary, Window};
 use kernels::layout::{
-    CameraParams, CameraTraceParams, DISC_TILE, DepthRanks, DiscParams, PERSPECTIVE,
+    CameraParams, CameraTraceParams, DISC_TILE, DepthRanks, DiscParams, PERSPECTIVE, TreeInfo,
 };
 use points::Grids;
 
@@ -16,29 +16,52 @@ const NEAREST_SHARE: f64 = 1.0 / 64.0;
 /// With several grids down to this many cells of the finest: small things may be near.
 const NEAREST_CELLS: f64 = 64.0;
 
-/// Points a pixel up to which discs are faster than the grid: each picture bins all points anew.
+/// Points a pixel up to which discs are faster than the grid, and than the tree: each picture bins all points anew.
 /// Measured in docs/benchmarks.md.
-const POINTS_PER_PIXEL: usize = 4;
+const POINTS_PER_PIXEL: f64 = 4.0;
+const POINTS_PER_PIXEL_TO_TREE: f64 = 0.3;
 /// Pixels from which on they are: the dispatches of the binning cost what they cost.
 const FEWEST_PIXELS: usize = 32_768;
 
 impl Plan {
-    /// Whether the camera rays of a tile of the picture are to find their first hit by discs: where all
-    /// of them start from the eye and go through their pixel's centre, which binning relies on.
+    /// Whether all camera rays start from the eye and go through their pixel's centre, one each.
+    #[must_use]
+    pub fn looks_through_centers(&self) -> bool {
+        self.samples == 1 && self.camera.projection == PERSPECTIVE
+    }
+
+    /// Whether the camera rays of a tile of the picture are to find their first hit by discs: where they go through
+    /// the centres of pixels, which binning relies on.
     #[must_use]
     pub fn by_discs(&self, tile: &Window) -> bool {
-        let from_eye = self.samples == 1 && self.camera.projection == PERSPECTIVE;
         match self.primary {
-            _ if !from_eye => false,
+            _ if !self.looks_through_centers() => false,
             Primary::Discs => true,
-            Primary::Grid => false,
+            Primary::Grid | Primary::Tree => false,
             Primary::Auto => self.discs_are_faster(tile) && !self.is_about_cells(),
         }
     }
 
     fn discs_are_faster(&self, tile: &Window) -> bool {
-        let pixels = tile.pixels();
-        pixels >= FEWEST_PIXELS && self.cloud.points.len() <= POINTS_PER_PIXEL * pixels
+        let (pixels, points) = (tile.pixels(), self.cloud.points.len());
+        let most = if self.by_tree() { POINTS_PER_PIXEL_TO_TREE } else { POINTS_PER_PIXEL };
+        pixels >= FEWEST_PIXELS && points as f64 <= most * pixels as f64
+    }
+
+    /// Whether rays that do not come from the camera go through the tree, where the device can.
+    #[must_use]
+    pub fn by_tree(&self) -> bool {
+        self.secondary != Secondary::Grid && self.may_take_tree()
+    }
+
+    /// Whether camera rays that are not traced by discs do.
+    #[must_use]
+    pub fn camera_by_tree(&self) -> bool {
+        self.primary != Primary::Grid && self.may_take_tree()
+    }
+
+    fn may_take_tree(&self) -> bool {
+        self.ray_loop != RayLoop::Images && !self.is_about_cells()
     }
 
     /// Whether somebody wants to see the grid at work.
@@ -58,7 +81,7 @@ impl Plan {
         }
     }
 
-    /// Whether the first wave of a tile that is traced by discs may be one pass: where its rays meet nothing but
+    /// Whether the first wave of a tile may be one pass: where its rays meet nothing but
     /// surfaces, which are taken as they are.
     #[must_use]
     pub fn meets_surfaces_alone(&self) -> bool {
@@ -86,6 +109,7 @@ impl Plan {
             ranks: self.discs_of(tile, grids).ranks,
             transparent: wave.transparent,
             max_bounces: wave.max_bounces,
+            tree: TreeInfo::default(),
         }
     }
 }

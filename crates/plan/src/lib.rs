@@ -40,7 +40,7 @@ use kernels::layout::{
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
 use points::{Cloud, CloudError, ObjectPoints, PointSet, bounds_of};
 use scene::{Fresnel, Light, Object, Scene, Up};
-pub use scene::{Primary, RayLoop};
+pub use scene::{Primary, RayLoop, Secondary};
 use std::sync::Arc;
 
 /// Columns of a tile at most: a row of the ray state's images.
@@ -82,6 +82,8 @@ pub struct Plan {
     pub ray_loop: RayLoop,
     /// How camera rays find their first hit. Changes no pixel.
     pub primary: Primary,
+    /// How all other rays find theirs. Changes no pixel.
+    pub secondary: Secondary,
     /// Rays a pixel; one alone goes through its centre.
     pub samples: u32,
     /// Where the reconstruction filter's integral takes equal steps, in pixels from a pixel's centre.
@@ -188,6 +190,7 @@ impl Plan {
             cells_per_pass: scene.render.cells_per_pass,
             ray_loop: scene.render.ray_loop,
             primary: scene.render.primary,
+            secondary: scene.render.secondary,
             point_count: sets.iter().map(|set| set.len() as u64).sum(),
             volumes,
             camera_media: inside::media_of_eye(scene, &sets, &world, camera.eye),

@@ -24,9 +24,9 @@ const EDGE_PER_TRUST: f64 = 2.5;
 const CELLS_PER_POINT: f64 = 8.0;
 /// Pairs of cell and point a point, at most, before the exact test; even sets have about six.
 const PAIRS_PER_POINT: f64 = 48.0;
-/// Bytes a point of both, at most: with the 64 of its polynomial, tracing holds 100. Of the pairs before the exact test, so
-/// many are listed.
-const BYTES_PER_POINT: f64 = 36.0;
+/// Bytes a point of both, at most: with the 64 of its polynomial and the 10 of the tree, tracing holds 100. Of the pairs
+/// before the exact test, so many are listed.
+const BYTES_PER_POINT: f64 = 25.5;
 const LISTED_PAIRS: f64 = 0.9;
 /// Few points may still have this many cells and pairs.
 const ALWAYS_ALLOWED: f64 = 65_536.0;

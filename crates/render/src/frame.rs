@@ -12,9 +12,9 @@ use crate::RenderError;
 use crate::budget::Budget;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
-    AlbedoIo, CameraRays, CameraRaysIo, CameraTrace, CameraTraceIo, Classify, ClassifyIo,
-    DiscTrace, GridTrace, Isosurface, ListMarked, March, Marks, PointLight, Refine, Scatter,
-    ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, SurfaceHit,
+    AlbedoIo, CameraRays, CameraRaysIo, CameraTrace, CameraTraceIo, CameraWay, Classify,
+    ClassifyIo, DiscTrace, GridTrace, Isosurface, ListMarked, March, Marks, PointLight, Refine,
+    Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, SurfaceHit, TreeTrace,
 };
 use crate::samples::Samples;
 use crate::state::{RayLoop, RayState};
@@ -22,11 +22,12 @@ use crate::volumes::VolumeBuffers;
 use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder, Timings};
 use kernels::layout::{
-    FilmPixel, Hit, Path, Polynomial, SCENE_LEVELS, SCENE_SKIPS, WAVE_SHARES_PATH, WaveParams,
+    FilmPixel, Hit, Path, Polynomial, SCENE_BLENDS, SCENE_LEVELS, SCENE_SKIPS, SCENE_VALUES,
+    WAVE_SHARES_PATH, WaveParams,
 };
 use plan::{MAX_DISC_PAIRS, Picture, Plan, Rays, Window, camera_wave};
 use points::Watch;
-use points::device::Surfaces;
+use points::device::{Needed, Surfaces};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -51,13 +52,13 @@ pub struct FrameStats {
     pub trace: Duration,
     /// What the driver took to make pipelines that no frame or build of this device had used before.
     pub pipelines: Duration,
-    /// Dispatches of `grid_trace` and `disc_trace`.
+    /// Dispatches of the traversal.
     pub passes: u32,
     /// Camera rays whose paths have ended.
     rays: u64,
     /// GPU time of each kernel, in milliseconds, by name, in the order of first use.
     pub kernels: Vec<(&'static str, f64)>,
-    /// What of it `grid_trace` and `disc_trace` took.
+    /// What of it the traversal took.
     pub traversal: Traversal,
 }
 
@@ -75,7 +76,7 @@ pub struct Traversal {
 impl Traversal {
     /// Adds what the traversal among these passes took.
     fn add(&mut self, traced: Traced, passes: &[(&'static str, f64)]) {
-        let names = [GridTrace::NAME, DiscTrace::NAME, CameraTrace::NAME];
+        let names = [GridTrace::NAME, TreeTrace::NAME, DiscTrace::NAME, CameraTrace::NAME];
         let traversal = |pass: &&(&str, f64)| names.contains(&pass.0);
         let milliseconds: f64 = passes.iter().filter(traversal).map(|pass| pass.1).sum();
         match traced {
@@ -137,6 +138,7 @@ struct Passes {
     camera_trace: CameraTrace,
     disc_trace: DiscTrace,
     grid_trace: GridTrace,
+    tree_trace: TreeTrace,
     surface_hit: SurfaceHit,
     refine: Refine,
     classify: Classify,
@@ -156,6 +158,7 @@ impl Passes {
             camera_trace: CameraTrace::new(device, scene)?,
             disc_trace: DiscTrace::new(device, form)?,
             grid_trace: GridTrace::new(device, form, scene)?,
+            tree_trace: TreeTrace::new(device, scene)?,
             surface_hit: SurfaceHit::new(device, form, scene)?,
             refine: Refine::new(device, form)?,
             classify: Classify::new(device, form, scene)?,
@@ -217,24 +220,24 @@ impl Renderer {
     /// # Errors
     /// A device without the memory, a buffer over its limits, a lost device, an interruption.
     pub fn new(device: &Arc<Device>, plan: &Plan, watch: &dyn Watch) -> Result<Self, RenderError> {
+        let tiles = plan.tiles();
+        let pixels = tiles.iter().map(Window::pixels).max().unwrap_or(1) as u64;
+        let rays = tiles.iter().map(camera_wave).max().unwrap_or(1) * plan.rays_per_pixel();
         let surfaces = Surfaces::build(
             device,
             &plan.cloud,
             &plan.fits,
             plan.grid_resolution,
-            plan.refines(),
+            needed(plan, device, rays),
             &plan.volumes.stand_ins(),
             watch,
         )?;
-        let tiles = plan.tiles();
-        let pixels = tiles.iter().map(Window::pixels).max().unwrap_or(1) as u64;
-        let rays = tiles.iter().map(camera_wave).max().unwrap_or(1) * plan.rays_per_pixel();
         let records = plan.cloud.points.len() as u64 * TEXELS_A_POLYNOMIAL;
         let lists = (surfaces.cells.bytes() / 8).max(u64::from(MAX_DISC_PAIRS));
         let longest = records.max(lists).max(u64::from(rays) * TEXELS_A_RAY);
         let form = RayLoop::of(plan.ray_loop, device, longest);
         let live_rays = || Buffer::new(device, "list of live rays", u64::from(rays) * 4);
-        let skips = if surfaces.grids.skip_cells() { SCENE_SKIPS } else { 0 };
+        let skips = if surfaces.is_listed && surfaces.grids.skip_cells() { SCENE_SKIPS } else { 0 };
         let levels = if surfaces.grids.are_several() { SCENE_LEVELS } else { 0 };
         let scene = plan.scene_bits() | skips | levels;
         let shadows = if plan.lights.is_empty() { 1 } else { rays };
@@ -381,8 +384,8 @@ impl Renderer {
         self.passes.camera_rays.record(&mut self.recorder, io, &params);
     }
 
-    /// The first wave in one pass, if screen tiles are listed, its rays meet nothing but surfaces, and all of them
-    /// end within one pass's work.
+    /// The first wave in one pass, if screen tiles are listed or there is a tree, its rays meet nothing but surfaces, and
+    /// all of them end within one pass's work.
     fn trace_at_once(
         &mut self,
         plan: &Plan,
@@ -391,12 +394,16 @@ impl Renderer {
         stats: &mut FrameStats,
     ) -> Result<Option<Classes>, RenderError> {
         let may_end = self.form == RayLoop::Queue && self.ends_at_once;
-        if !(may_end && plan.by_discs(tile) && plan.meets_surfaces_alone()) {
+        if !(may_end && plan.looks_through_centers() && plan.meets_surfaces_alone()) {
             return Ok(None);
         }
-        let Some(lists) = self.discs.lists() else { return Ok(None) };
+        let way = match (self.discs.lists(), &self.surfaces.tree) {
+            (Some(lists), _) if plan.by_discs(tile) => CameraWay::Discs(lists),
+            (_, Some(tree)) if plan.camera_by_tree() => CameraWay::Tree(tree),
+            _ => return Ok(None),
+        };
         let io = CameraTraceIo {
-            lists,
+            way,
             surfaces: &self.surfaces,
             objects: &self.objects,
             images: &self.images,
@@ -594,6 +601,19 @@ impl Renderer {
             0 => self.wave.paths().clone(),
             _ => self.camera_path.clone(),
         }
+    }
+}
+
+/// What the rays of a plan, at most so many at once, will ask of the surfaces.
+fn needed(plan: &Plan, device: &Device, rays: u32) -> Needed {
+    let longest = (u64::from(rays) * TEXELS_A_RAY).max(u64::from(MAX_DISC_PAIRS));
+    let fits = longest <= u64::from(device.limits().max_texel_buffer_elements);
+    let (camera, others) = (plan.camera_by_tree(), plan.by_tree());
+    let looks_around = plan.scene_bits() & (SCENE_BLENDS | SCENE_VALUES) != 0;
+    Needed {
+        lists: looks_around || !(camera && others),
+        tree: fits && (camera || others),
+        point_cells: plan.refines(),
     }
 }
 

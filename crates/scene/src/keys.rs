@@ -297,12 +297,21 @@ pub(crate) static RENDER: Table = Table {
         ),
         key(
             "primary",
-            Kind::Choice(&["grid", "discs", "auto"]),
+            Kind::Choice(&["grid", "discs", "tree", "auto"]),
             Value("\"auto\""),
-            "How camera rays find their first hit: cell after cell of the grid, or each tile of \
-             pixels among the points whose discs cover it. `auto` takes discs for up to 4 points a \
-             pixel, unless cells are limited or counted. Several samples a pixel and orthographic \
-             views always take the grid. Changes no pixel.",
+            "How camera rays find their first hit: cell after cell of the grid, each tile of pixels among the \
+             points whose discs cover it, or through a tree of boxes around the points. `auto` takes discs or the \
+             tree, whichever is expected to be faster; several samples a pixel and orthographic views never take \
+             discs. Where cells are limited or counted, or the ray state lives in images, the grid replaces the \
+             tree. Changes no pixel.",
+        ),
+        key(
+            "secondary",
+            Kind::Choice(&["grid", "tree", "auto"]),
+            Value("\"auto\""),
+            "How shadow rays and those from mirrors and glass find their hits: cell after cell of the grid, or \
+             through the tree, which `auto` takes. Where cells are limited or counted, or the ray state lives in \
+             images, the grid replaces the tree. Changes no pixel.",
         ),
     ],
 };

@@ -8,8 +8,9 @@ use crate::read::{Reader, to_number, to_vector};
 use crate::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
     ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, PointFilter,
-    Polynomial, Primary, Projection, RayLoop, Refine, RenderSettings, Scene, SceneError, Stop,
-    Surface, TextureAxis, Transfer, Transform, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
+    Polynomial, Primary, Projection, RayLoop, Refine, RenderSettings, Scene, SceneError, Secondary,
+    Stop, Surface, TextureAxis, Transfer, Transform, Up, Volume, VolumeKernel, VolumeMode,
+    VolumeShading,
 };
 use std::env;
 use std::fs::{self, File};
@@ -292,7 +293,13 @@ impl RenderSettings {
             primary: match table.text("primary").as_str() {
                 "grid" => Primary::Grid,
                 "discs" => Primary::Discs,
+                "tree" => Primary::Tree,
                 _ => Primary::Auto,
+            },
+            secondary: match table.text("secondary").as_str() {
+                "grid" => Secondary::Grid,
+                "tree" => Secondary::Tree,
+                _ => Secondary::Auto,
             },
         }
     }

@@ -98,6 +98,8 @@ pub struct RenderSettings {
     pub grid_resolution: u32,
     /// How camera rays find their first hit. Changes no pixel.
     pub primary: Primary,
+    /// How all other rays find theirs. Changes no pixel.
+    pub secondary: Secondary,
 }
 
 /// What glass does with a ray that it both reflects and refracts.
@@ -127,7 +129,20 @@ pub enum Primary {
     Grid,
     /// Among the points whose discs cover the tile of pixels.
     Discs,
+    /// Through the tree.
+    Tree,
     /// Whichever is expected to be faster.
+    Auto,
+}
+
+/// How rays that do not come from the camera find their hits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Secondary {
+    /// Cell after cell of the grid.
+    Grid,
+    /// Through the tree.
+    Tree,
+    /// Through the tree, unless the grid is to be seen at work.
     Auto,
 }
 

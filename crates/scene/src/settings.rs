@@ -9,8 +9,8 @@ use std::fmt::{self, Write};
 
 impl Scene {
     /// Canonical TOML of everything that changes a picture, defaults included: all but
-    /// `cells_per_pass`, `loop` and `primary`. Loading it as the same file gives the same scene up
-    /// to those three, and the same bytes again.
+    /// `cells_per_pass`, `loop`, `primary` and `secondary`. Loading it as the same file gives the same scene up
+    /// to those four, and the same bytes again.
     pub fn settings_toml(&self) -> String {
         let mut out = String::new();
         // Writing to a string cannot fail.

@@ -31,6 +31,7 @@ loop = "images"
 seed = 4294967295
 grid_resolution = 96
 primary = "discs"
+secondary = "tree"
 
 [background]
 color = [0.1, 0.2, 1e-7]
@@ -219,6 +220,7 @@ fn every_built_key_is_read() {
         seed: u32::MAX,
         grid_resolution: 96,
         primary: Primary::Discs,
+        secondary: Secondary::Tree,
     };
     assert_eq!(scene.render, render);
     assert_eq!(scene.background, Background { color: [0.1, 0.2, 1e-7], environment: None });
@@ -365,6 +367,7 @@ fn what_is_left_out_is_the_contracts_default() {
     assert_eq!((scene.render.cells_per_pass, scene.render.ray_loop), (0, RayLoop::Auto));
     assert_eq!((scene.render.seed, scene.render.grid_resolution), (0, 0));
     assert_eq!(scene.render.primary, Primary::Auto);
+    assert_eq!(scene.render.secondary, Secondary::Auto);
     assert_eq!((scene.background.color, scene.lights.len()), ([0.0; 3], 0));
     let object = &scene.objects[0];
     assert_eq!((object.name.as_str(), object.transform), ("a", Transform::IDENTITY));
@@ -879,6 +882,7 @@ fn settings_parse_to_the_same_scene_and_the_same_bytes() {
     let again = read(&settings).unwrap();
     (scene.render.cells_per_pass, scene.render.ray_loop) = (0, RayLoop::Auto);
     scene.render.primary = Primary::Auto;
+    scene.render.secondary = Secondary::Auto;
     assert_eq!(again, scene);
     assert_eq!(again.settings_toml(), settings);
     let small = read(SMALL).unwrap();
@@ -910,10 +914,15 @@ fn settings_state_every_built_key() {
     settings += &read(&format!("{SMALL}{iso}")).unwrap().settings_toml();
     for (name, path) in keys {
         let stated = settings.lines().any(|line| line.starts_with(&format!("{name} = ")));
-        // Three change no picture; the Abbe number is in the indices.
-        let unseen =
-            ["render.cells_per_pass", "render.loop", "render.primary", "objects.material.abbe"]
-                .contains(&path.as_str());
+        // Four change no picture; the Abbe number is in the indices.
+        let unseen = [
+            "render.cells_per_pass",
+            "render.loop",
+            "render.primary",
+            "render.secondary",
+            "objects.material.abbe",
+        ]
+        .contains(&path.as_str());
         assert_eq!(stated, !unseen, "{path}");
     }
 }

@@ -72,7 +72,7 @@ fn a_lost_device_is_4_and_says_where_and_what_to_do() {
     let faulty = Faulty::new();
     for call in ["vkQueueSubmit", "vkWaitForFences"] {
         // While the surfaces are built, and while they are traced.
-        for (at, pass) in [(0, "'find_neighbors'"), (4, "'grid_trace'")] {
+        for (at, pass) in [(0, "'find_neighbors'"), (5, "'camera_trace'")] {
             let ran = faulty.render(&format!("{call}@{at}={LOST}"));
             let words = ["device lost in", pass, "--cells-per-pass 1", "--device reference"];
             let ran = ran.fails_with(4, &words);

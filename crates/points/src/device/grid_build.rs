@@ -138,6 +138,12 @@ impl GridBuild {
         Kernel::new(device, name, module, bindings, size_of::<GridParams>())
     }
 
+    /// Where nobody asks for them: one word each, which is not read.
+    pub fn no_lists(&self) -> Result<GridLists, GpuError> {
+        let empty = |name| Buffer::new(&self.device, name, 16);
+        Ok(GridLists { cells: empty("cells")?, slots: empty("cell slots")? })
+    }
+
     /// Lists the points whose trust ball meets each cell of each grid, in the order of `order` (slots by ordinal).
     pub fn run(&self, rec: &mut Work, levels: &[GridBuildIo<'_>]) -> Result<GridLists, GpuError> {
         let device = &self.device;

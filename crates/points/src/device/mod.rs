@@ -12,11 +12,13 @@ mod search;
 mod skip;
 mod smooth;
 mod sort;
+mod tree;
 mod work;
 
 pub use fitting::nearest_others;
 pub use scan::Scan;
 pub use sort::{Pairs, Sort, SortSpace};
+pub use tree::Tree;
 
 use crate::{Cloud, Grids, Watch, plan_grids};
 use fitting::{Fitted, fit_all};
@@ -45,6 +47,10 @@ pub struct Surfaces {
     pub slots: Buffer,
     /// Each point in its own cell alone; only where hits are refined and any point carries a surface.
     pub point_cells: Option<PointCells>,
+    /// The boxes around them, where rays go through these.
+    pub tree: Option<Tree>,
+    /// Whether `cells` and `slots` list anything.
+    pub is_listed: bool,
     /// Points whose neighbours were found on the host, since the search on the device is bounded.
     pub searched_on_host: u64,
     /// Milliseconds of each kernel of the build by the device's clock, in the order of first use.
@@ -91,23 +97,30 @@ pub enum BuildError {
     Interrupted,
 }
 
+/// What the tree takes a point, at least.
+const TREE_BYTES_PER_POINT: u64 = 9;
+
 /// Bytes of a device's memory that a build takes, by a lower estimate: what does not fit could not have been
 /// finished.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Memory {
     points: u64,
-    refines: bool,
+    needed: Needed,
 }
 
 impl Memory {
-    fn of(points: u64, refines: bool) -> Self {
-        Self { points, refines }
+    fn of(points: u64, needed: Needed) -> Self {
+        Self { points, needed }
     }
 
-    /// What tracing needs: polynomials, and of the grid a cell and two entries of its list a point.
+    /// What tracing needs: polynomials, of the tree a node and more every eight points, of the grid a cell and two
+    /// entries of its list a point.
     fn kept(self) -> u64 {
-        let refinement = if self.refines { size_of::<FitOutcome>() + 16 } else { 0 };
-        self.points * (size_of::<Polynomial>() + 16 + refinement) as u64
+        let tree = if self.needed.tree { TREE_BYTES_PER_POINT } else { 0 };
+        let lists = if self.needed.lists || !self.needed.tree { 16 } else { 0 };
+        let refinement =
+            if self.needed.point_cells { size_of::<FitOutcome>() as u64 + 16 } else { 0 };
+        self.points * (size_of::<Polynomial>() as u64 + tree + lists + refinement)
     }
 
     /// Beside that, while fitting, the points; while the grid is built, their order and their pairs.
@@ -125,10 +138,20 @@ impl Memory {
     }
 }
 
+/// What tracing will ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Needed {
+    /// The points of each cell; listed in any case where there is no tree.
+    pub lists: bool,
+    /// The tree, if the device can.
+    pub tree: bool,
+    /// What refinement of hits reads.
+    pub point_cells: bool,
+}
+
 impl Surfaces {
     /// Fits every point of the cloud and sorts the fits into grids. `fits` has one entry an object;
-    /// `resolution` is the number of cells along the grid's longest axis, 0: chosen; `refines` also
-    /// lists what refinement of hits reads. `stand_ins` come behind the polynomials of all points, and in
+    /// `resolution` is the number of cells along the grid's longest axis, 0: chosen. `stand_ins` come behind the polynomials of all points, and in
     /// no cell.
     ///
     /// # Errors
@@ -138,11 +161,12 @@ impl Surfaces {
         cloud: &Cloud,
         fits: &[FitParams],
         resolution: u32,
-        refines: bool,
+        needed: Needed,
         stand_ins: &[Polynomial],
         watch: &dyn Watch,
     ) -> Result<Self, BuildError> {
-        Memory::of(cloud.points.len() as u64, refines).require(device.limits().heap_bytes)?;
+        let refines = needed.point_cells;
+        Memory::of(cloud.points.len() as u64, needed).require(device.limits().heap_bytes)?;
         let mut work = Work::new(device)?;
         let fitted = (cloud.points.len() * size_of::<Polynomial>()) as u64;
         let bytes = fitted + size_of_val(stand_ins) as u64;
@@ -174,8 +198,14 @@ impl Surfaces {
         // Refinement asks for the points, the grid for their balls: those move at rims.
         let point_cells = if refines { build.list_points(&mut work, &levels)? } else { None };
         clip::clip_balls(device, &mut work, &polynomials, &rims.clips(&cloud.points, &outcomes))?;
-        let lists = build.run(&mut work, &levels)?;
-        if grids.skip_cells() {
+        let cells = u64::from(grids.cell_count());
+        let tree = match needed.tree && Tree::fits(device, cloud.points.len() as u32, cells) {
+            true => Some(Tree::build(device, &mut work, &polynomials, cloud.points.len() as u32)?),
+            false => None,
+        };
+        let is_listed = needed.lists || tree.is_none();
+        let lists = if is_listed { build.run(&mut work, &levels)? } else { build.no_lists()? };
+        if is_listed && grids.skip_cells() {
             for io in &levels {
                 skip::skip_cells(device, &mut work, &io.level, &io.grid_info, &lists.cells)?;
             }
@@ -192,6 +222,8 @@ impl Surfaces {
             cells: lists.cells,
             slots: lists.slots,
             point_cells,
+            tree,
+            is_listed,
             searched_on_host,
             kernels: work.kernels,
         })
@@ -204,7 +236,8 @@ impl Surfaces {
             cells.offsets.bytes() + cells.points.bytes() + self.outcome_buffer.bytes()
         };
         let refinement = self.point_cells.as_ref().map_or(0, listed);
-        self.polynomials.bytes() + self.cells.bytes() + self.slots.bytes() + refinement
+        let tree = self.tree.as_ref().map_or(0, |tree| tree.nodes.bytes());
+        self.polynomials.bytes() + self.cells.bytes() + self.slots.bytes() + tree + refinement
     }
 }
 
@@ -221,13 +254,18 @@ mod tests {
     #[test]
     fn more_points_than_memory_are_refused_with_how_many_would_fit() {
         let heap = 2 << 30;
-        assert!(Memory::of(0, true).require(0).is_ok());
-        assert!(Memory::of(10_000_000, false).require(heap).is_ok());
-        let Err(error) = Memory::of(100_000_000, false).require(heap) else {
-            unreachable!("6.4 GB of polynomials alone")
-        };
-        let BuildError::Memory { fitting, .. } = error else { unreachable!("{error}") };
-        assert!(Memory::of(fitting, false).require(heap).is_ok());
-        assert!(Memory::of(fitting + fitting / 50, false).require(heap).is_err());
+        let listed = Needed { lists: true, tree: true, point_cells: false };
+        let bare = Needed { lists: false, ..listed };
+        let refined = Needed { point_cells: true, ..listed };
+        assert!(Memory::of(0, refined).require(0).is_ok());
+        assert!(Memory::of(10_000_000, listed).require(heap).is_ok());
+        for needed in [listed, bare, refined] {
+            let Err(error) = Memory::of(100_000_000, needed).require(heap) else {
+                unreachable!("6.4 GB of polynomials alone")
+            };
+            let BuildError::Memory { fitting, .. } = error else { unreachable!("{error}") };
+            assert!(Memory::of(fitting, needed).require(heap).is_ok());
+            assert!(Memory::of(fitting + fitting / 50, needed).require(heap).is_err());
+        }
     }
 }

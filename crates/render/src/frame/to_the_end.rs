@@ -33,6 +33,11 @@ impl Renderer {
         let (surfaces, live, live_rays) = (&self.surfaces, &self.live, &mut self.live_rays);
         let (list_marked, live_marks) = (&self.passes.list_marked, &self.live_marks);
         let mut params = wave;
+        let mut starts = true;
+        let by_tree = match traced {
+            Traced::ByDiscs(_) | Traced::Camera => plan.camera_by_tree(),
+            Traced::Scattered | Traced::Shadows | Traced::PastObject(_) => plan.by_tree(),
+        };
         while alive > 0 {
             if watch.interrupted() {
                 return Err(RenderError::Interrupted);
@@ -63,7 +68,14 @@ impl Renderer {
                     let live_rays = &live_rays[0];
                     let marks = &live_marks.bits;
                     let io = GridTraceIo { surfaces, state, live, marks, live_rays };
-                    self.passes.grid_trace.record(&mut self.recorder, io, from, &params);
+                    match &surfaces.tree {
+                        Some(tree) if by_tree => {
+                            let rec = &mut self.recorder;
+                            self.passes.tree_trace.record(rec, io, tree, from, &params, starts);
+                        }
+                        _ => self.passes.grid_trace.record(&mut self.recorder, io, from, &params),
+                    }
+                    starts = false;
                 }
             }
             let timings = self.recorder.submit()?;

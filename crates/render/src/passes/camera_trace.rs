@@ -7,17 +7,24 @@ use crate::wave::WaveBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
     CameraTraceParams, DISC_KEYS_IN, DISC_RANGES_IN, DISC_SLOTS_IN, SHADE_FILM, SHADE_IMAGES,
-    SHADE_OBJECTS, SHADE_TEXELS, TRACE_CELLS, TRACE_HITS, TRACE_INFO, TRACE_LIVE,
+    SHADE_OBJECTS, SHADE_TEXELS, TRACE_CELLS, TRACE_HITS, TRACE_INFO, TRACE_LIVE, TRACE_NODES,
     TRACE_POLYNOMIALS, TRACE_SLOTS, WAVE_LIT, WAVE_LIT_HITS, WAVE_NEXT_MARKS, WAVE_SCATTERING,
 };
 use kernels::spirv;
-use points::device::Surfaces;
+use points::device::{Surfaces, Tree};
 use std::sync::Arc;
+
+/// How its rays find their hits.
+#[derive(Clone, Copy)]
+pub(crate) enum CameraWay<'a> {
+    Discs(&'a DiscLists),
+    Tree(&'a Tree),
+}
 
 /// What the pass works on.
 #[derive(Clone, Copy)]
 pub(crate) struct CameraTraceIo<'a> {
-    pub lists: &'a DiscLists,
+    pub way: CameraWay<'a>,
     pub surfaces: &'a Surfaces,
     pub objects: &'a Buffer,
     pub images: &'a Buffer,
@@ -34,7 +41,8 @@ pub(crate) struct CameraTraceIo<'a> {
 
 /// The first wave from the eye to the film, where nothing but surfaces meets it (\[T\] §4).
 pub(crate) struct CameraTrace {
-    kernel: Kernel,
+    by_discs: Kernel,
+    by_tree: Kernel,
 }
 
 impl CameraTrace {
@@ -58,21 +66,33 @@ impl CameraTrace {
         bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
         bindings.push((SHADE_OBJECTS, form.read(Texel::Four)));
         bindings.extend(surface_lists(form));
-        bindings.extend(disc_lists(form));
-        let params = size_of::<CameraTraceParams>();
-        let module = spirv::camera_trace();
-        let scene = Some(scene);
-        let kernel = Kernel::specialized(device, Self::NAME, &module, &bindings, params, scene)?;
-        Ok(Self { kernel })
+        let kernel = |module: &[u32], lists: &[(u32, Binding)]| {
+            let bindings = [&bindings[..], lists].concat();
+            let params = size_of::<CameraTraceParams>();
+            Kernel::specialized(device, Self::NAME, module, &bindings, params, Some(scene))
+        };
+        Ok(Self {
+            by_discs: kernel(&spirv::camera_trace(), &disc_lists(form))?,
+            by_tree: kernel(&spirv::camera_trace_tree(), &[(TRACE_NODES, form.read(Texel::Four))])?,
+        })
     }
 
     /// Records the first wave of a tile.
     pub fn record(&self, rec: &mut Recorder, io: CameraTraceIo<'_>, params: &CameraTraceParams) {
+        let mut params = *params;
+        let pass = match io.way {
+            CameraWay::Discs(lists) => rec
+                .pass(Self::NAME, &self.by_discs)
+                .buffer(DISC_RANGES_IN, &lists.tiles)
+                .buffer(DISC_KEYS_IN, &lists.pairs.keys)
+                .buffer(DISC_SLOTS_IN, &lists.pairs.slots),
+            CameraWay::Tree(tree) => {
+                params.tree = tree.info;
+                rec.pass(Self::NAME, &self.by_tree).buffer(TRACE_NODES, &tree.nodes)
+            }
+        };
         io.state
-            .bind_written(rec.pass(Self::NAME, &self.kernel))
-            .buffer(DISC_RANGES_IN, &io.lists.tiles)
-            .buffer(DISC_KEYS_IN, &io.lists.pairs.keys)
-            .buffer(DISC_SLOTS_IN, &io.lists.pairs.slots)
+            .bind_written(pass)
             .buffer(TRACE_INFO, &io.surfaces.grid_levels)
             .buffer(TRACE_CELLS, &io.surfaces.cells)
             .buffer(TRACE_SLOTS, &io.surfaces.slots)
@@ -87,7 +107,7 @@ impl CameraTrace {
             .buffer(WAVE_LIT_HITS, io.wave.lit_hits())
             .buffer(WAVE_SCATTERING, &io.wave.scattering.bits)
             .buffer(WAVE_NEXT_MARKS, &io.wave.next.bits)
-            .push(params)
+            .push(&params)
             .dispatch(over_pixels(params.tile_size));
     }
 }

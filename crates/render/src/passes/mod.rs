@@ -19,11 +19,12 @@ mod scatter;
 mod shade;
 mod shadow_rays;
 mod surface_hit;
+mod tree_trace;
 
 pub(crate) use accumulate::Accumulate;
 pub(crate) use albedo::AlbedoIo;
 pub(crate) use camera_rays::{CameraRays, CameraRaysIo};
-pub(crate) use camera_trace::{CameraTrace, CameraTraceIo};
+pub(crate) use camera_trace::{CameraTrace, CameraTraceIo, CameraWay};
 pub(crate) use classify::{Classify, ClassifyIo};
 pub(crate) use disc_count::DiscCount;
 pub(crate) use disc_emit::DiscEmit;
@@ -39,6 +40,7 @@ pub(crate) use scatter::{Scatter, ScatterIo};
 pub(crate) use shade::{Shade, ShadeIo};
 pub(crate) use shadow_rays::{ShadowRays, ShadowRaysIo};
 pub(crate) use surface_hit::{SurfaceHit, SurfaceHitIo};
+pub(crate) use tree_trace::TreeTrace;
 
 use crate::state::RayLoop;
 use gpu::{Binding, Texel};

@@ -1,0 +1,49 @@
+// tree_trace: lets each live ray visit nodes of the tree, to its nearest hit.
+//
+// reads   the ray state, polynomials
+//         nodes
+//         live_rays        those that live, where few of a wave do
+// writes  the ray state    in place
+//         live             how many rays have not ended yet
+//         marks            one bit for each of these, by its place in the list; must be zero before
+// runs    one invocation per ray of the wave; dispatched until no ray lives
+// twin    crates/reference/src/grid_trace.rs (hits are those of any structure)
+//
+// What grid_trace finds, to the bit: the nearest hit of all polynomials, or of equals the first. With LEAVES as there.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define QUEUE
+#define STATE_READS
+#define STATE_WRITES
+#include "layout.glsl"
+#include "math.glsl"
+#include "scene.glsl"
+#include "tree_walk.glsl"
+#include "index.glsl"
+
+layout(local_size_x = LINE_GROUP) in;
+layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
+layout(std430, binding = WAVE_MARKS) buffer Marks { uint marks[]; };
+layout(std430, binding = LIVE_RAYS) readonly buffer LiveRays { uint live_rays[]; };
+layout(push_constant) uniform Push { TreeTraceParams params; };
+
+void main() {
+    uint place = list_index();
+    if (place >= params.ray_count) return;
+    uint index = params.listed != 0u ? live_rays[place] : place;
+    Ray ray = load_ray(index);
+    TreePlace at = before_root();
+    if (params.starts == 0u) {
+        uvec2 more = state_of(index).start.zw;
+        at = TreePlace(ray.cell, uvec2(ray.cursor, more.x), more.y);
+    }
+    bool alive = walk_tree(ray, at, params.tree, params.work, params.any_hit != 0u, params.passed);
+    state_out[index].position.w = floatBitsToUint(ray.hit_t);
+    state_out[index].direction.w = ray.cells;
+    state_out[index].cell = uvec4(alive ? at.node : NONE, at.pending.x, ray.tests, ray.hit_slot);
+    if (alive) {
+        state_out[index].start.zw = uvec2(at.pending.y, at.backwards);
+        atomicAdd(live, 1u);
+        atomicOr(marks[place / 32u], 1u << (place & 31u));
+    }
+}

@@ -1,0 +1,187 @@
+// tree_walk: a ray's way through the tree to its nearest hit.
+//
+// twin    crates/reference/src/grid_trace.rs (hits are those of any structure)
+// reads   nodes, polynomials
+// A ray remembers which children of the nodes above it it has yet to visit, eight bits a level, and can stop
+// after any few nodes. Points whose boxes it meets are set aside, up to four nodes of them, and then solved together:
+// lanes that have found some wait for others no longer than that.
+#ifndef TREE_WALK_GLSL
+#define TREE_WALK_GLSL
+#include "math.glsl"
+#include "polynomial.glsl"
+#include "records.glsl"
+#include "scene.glsl"
+#include "state.glsl"
+#include "tree.glsl"
+
+layout(binding = TRACE_NODES) uniform usamplerBuffer node_texels; // four a node
+
+#define NODES_AT_ONCE 8u
+#define PARALLEL_INVERSE 1e-20 // a component under this
+#define TREE_ROUNDING 9.5367e-7 // of distances: 2^-20, some steps of rounding of a ray's own and of a hit's
+
+// Bytes of a word, each b as the float 1 + b / 256: two operations, where a conversion takes three.
+vec4 bytes_of(uint word) {
+    uvec4 shifted = uvec4(word << 15, word << 7, word >> 1, word >> 9);
+    return uintBitsToFloat((shifted & 0x7f8000u) | 0x3f800000u);
+}
+
+// One over a direction; a component that is none becomes one that never arrives.
+vec3 inverse_of(vec3 d) {
+    return 1.0 / vec3(abs(d.x) > PARALLEL_INVERSE ? d.x : PARALLEL_INVERSE, abs(d.y) > PARALLEL_INVERSE ? d.y : PARALLEL_INVERSE,
+                      abs(d.z) > PARALLEL_INVERSE ? d.z : PARALLEL_INVERSE);
+}
+
+// max and min of numbers: what GLSL's say of NaNs costs lavapipe four operations more.
+vec4 larger_of(vec4 a, vec4 b) {
+    return mix(a, b, lessThan(a, b));
+}
+
+vec4 smaller_of(vec4 a, vec4 b) {
+    return mix(a, b, lessThan(b, a));
+}
+
+uint bits_of(vec4 near, vec4 far) {
+    return (near.x <= far.x ? 1u : 0u) | (near.y <= far.y ? 2u : 0u) | (near.z <= far.z ? 4u : 0u)
+        | (near.w <= far.w ? 8u : 0u);
+}
+
+// The children of the node in memory whose boxes the ray meets no farther than `nearest`, a bit each; in bit 8, whether it is
+// to visit the last first.
+uint met_children(uint node, vec3 o, vec3 d, vec3 inverse, float nearest) {
+    int at = int(4u * node);
+    uvec4 frame = texelFetch(node_texels, at);
+    uvec4 a = texelFetch(node_texels, at + 1), b = texelFetch(node_texels, at + 2), c = texelFetch(node_texels, at + 3);
+    vec3 size = (256.0 * uintBitsToFloat((frame.w & 255u) << 23)) * inverse;
+    vec3 begin = (uintBitsToFloat(frame.xyz) - o) * inverse;
+    vec3 margin = TREE_ROUNDING * (abs(begin) + abs(size));
+    begin -= size; // what each byte has too much
+    vec3 enters = begin - margin, leaves = begin + margin;
+    bvec3 back = lessThan(inverse, vec3(0.0));
+    vec4 near = larger_of(larger_of(bytes_of(back.x ? a.w : a.x) * size.x + enters.x, bytes_of(back.y ? b.x : a.y) * size.y + enters.y),
+                    larger_of(bytes_of(back.z ? b.y : a.z) * size.z + enters.z, vec4(0.0)));
+    vec4 far = smaller_of(smaller_of(bytes_of(back.x ? a.x : a.w) * size.x + leaves.x, bytes_of(back.y ? a.y : b.x) * size.y + leaves.y),
+                   smaller_of(bytes_of(back.z ? a.z : b.y) * size.z + leaves.z, vec4(nearest)));
+    uint met = bits_of(near, far);
+    near = larger_of(larger_of(bytes_of(back.x ? c.y : b.z) * size.x + enters.x, bytes_of(back.y ? c.z : b.w) * size.y + enters.y),
+               larger_of(bytes_of(back.z ? c.w : c.x) * size.z + enters.z, vec4(0.0)));
+    far = smaller_of(smaller_of(bytes_of(back.x ? b.z : c.y) * size.x + leaves.x, bytes_of(back.y ? b.w : c.z) * size.y + leaves.y),
+              smaller_of(bytes_of(back.z ? c.x : c.w) * size.z + leaves.z, vec4(nearest)));
+    met |= bits_of(near, far) << 4;
+    int way = int(frame.w);
+    vec3 toward = vec3(ivec3(bitfieldExtract(way, 16, 5), bitfieldExtract(way, 21, 5), bitfieldExtract(way, 26, 5)));
+    return (met & (frame.w >> 8) & 255u) | (dot3(toward, d) < 0.0 ? 256u : 0u);
+}
+
+// Where a ray is: at the node whose children it visits, with those yet to visit of it and of the nodes above it, eight
+// bits each, and a bit each for those that it visits the last first.
+struct TreePlace {
+    uint node;
+    uvec2 pending;
+    uint backwards;
+};
+
+TreePlace before_root() {
+    return TreePlace(0u, uvec2(1u, 0u), 0u); // the root is the first child of what would be above it
+}
+
+// Goes on with a ray from where it is; whether it has not ended. With LEAVES it starts on a surface, whose own sheet it does
+// not meet again at once, and ends at `any_hit`, if so; an object is `passed`.
+bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, bool any_hit, uint passed) {
+    vec3 o = ray.origin, d = ray.direction;
+    vec3 inverse = inverse_of(d);
+    uint node = place.node, backwards = place.backwards;
+    uvec2 pending = place.pending;
+    bool alive = ray.cell != NONE;
+    uint hit_object = NONE, hit_index = NONE;
+    if (alive && ray.hit_slot != NONE) {
+        Polynomial hit = polynomial_of(ray.hit_slot);
+        hit_object = hit.object;
+        hit_index = hit.index;
+    }
+#ifdef LEAVES
+    // The sheet that the ray starts on.
+    vec3 left_normal = vec3(0.0);
+    uint left_object = NONE;
+    if (alive && ray.left != NONE) {
+        Polynomial left = polynomial_of(ray.left);
+        left_normal = normal_at(left, o);
+        left_object = left.object;
+    }
+#endif
+    uint work_left = work;
+    while (alive && work_left > 0u) {
+        uint looks = NODES_AT_ONCE;
+        uint set0 = 0u, set1 = 0u, set2 = 0u, set3 = 0u; // leaves set aside: number and children
+        while ((pending.x | pending.y) != 0u && set3 == 0u && looks > 0u) {
+            // Up to where children are left.
+            bool far_up = pending.x == 0u;
+            uint up = uint(findLSB(far_up ? pending.y : pending.x)) / 8u;
+            pending = far_up ? uvec2(pending.y, 0u) : pending;
+            uint shift = 8u * up;
+            pending = uvec2((pending.x >> shift) | (shift == 0u ? 0u : pending.y << (32u - shift)), pending.y >> shift);
+            up += far_up ? 4u : 0u;
+            node >>= 3u * up;
+            backwards >>= up;
+
+            uint left = pending.x & 255u;
+            uint child = (backwards & 1u) != 0u ? uint(findMSB(left)) : uint(findLSB(left));
+            pending.x &= ~(1u << child);
+            uint below = node * LEAF_POINTS + child;
+            bool is_leaf = below >= tree.first_leaf;
+            uint met = met_children(is_leaf ? below - tree.gap : below, o, d, inverse, ray.hit_t);
+            uint children = met & 255u;
+            bool sets_aside = is_leaf && children != 0u;
+            bool descends = !is_leaf && children != 0u;
+            set3 = sets_aside ? set2 : set3;
+            set2 = sets_aside ? set1 : set2;
+            set1 = sets_aside ? set0 : set1;
+            set0 = sets_aside ? ((below - tree.first_leaf) << 8) | children : set0;
+            node = descends ? below : node;
+            pending = descends ? uvec2((pending.x << 8) | children, (pending.y << 8) | (pending.x >> 24)) : pending;
+            backwards = descends ? (backwards << 1) | (met >> 8) : backwards;
+            --looks;
+        }
+        uint solved = 0u;
+        while (set0 != 0u) {
+            uint slot = (set0 >> 8) * LEAF_POINTS + uint(findLSB(set0));
+            set0 &= set0 - 1u;
+            bool done = (set0 & 255u) == 0u;
+            set0 = done ? set1 : set0;
+            set1 = done ? set2 : set1;
+            set2 = done ? set3 : set2;
+            set3 = done ? 0u : set3;
+            Polynomial p = polynomial_of(slot);
+#ifdef LEAVES
+            bool own = p.object == left_object && same_sheet(p, o, left_normal);
+            float from = own ? SHEET_REACH * p.center_trust.w : 0.0;
+#else
+            float from = 0.0;
+#endif
+            // The test of all lists: from far away, what `intersect` says of the rim of a ball is a matter of rounding.
+            bool near = near_trust_ball(o, d, p.center_trust, ray.hit_t);
+            float t = near ? intersect(o, d, p, from) : NO_HIT;
+#ifdef LEAVES
+            if (scene_has(SCENE_VOLUMES)) t = p.object == passed ? NO_HIT : t;
+#endif
+            bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);
+            bool nearer = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);
+            bool better = nearer && (!scene_has(SCENE_REFINES) || t > ray.after);
+            ray.hit_t = better ? t : ray.hit_t;
+            ray.hit_slot = better ? slot : ray.hit_slot;
+            hit_object = better ? p.object : hit_object;
+            hit_index = better ? p.index : hit_index;
+            ++solved;
+        }
+        ray.tests += solved;
+        ray.cells += NODES_AT_ONCE - looks;
+        work_left -= min(work_left, solved + (NODES_AT_ONCE - looks) + 2u);
+        alive = (pending.x | pending.y) != 0u;
+#ifdef LEAVES
+        alive = alive && !(any_hit && ray.hit_slot != NONE);
+#endif
+    }
+    place = TreePlace(node, pending, backwards);
+    return alive;
+}
+#endif
