@@ -36,9 +36,9 @@ void main() {
     while (at < end) {
         float square = square_of(uintBitsToFloat(words_of(points, params.first_slot + at).xyz) - center);
         square = at == place ? NO_HIT : square;
-#define SINK(j) d[j] = min(d[j], max(d[j - 1u], square));
+#define SINK(j) d[j] = smaller(d[j], larger(d[j - 1u], square));
         EACH_BUT_FIRST_BACKWARDS(SINK)
-        d[0] = min(d[0], square);
+        d[0] = smaller(d[0], square);
         ++at;
     }
     bounds[i] = d[NEAREST - 1u];

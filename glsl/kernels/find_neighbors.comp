@@ -127,13 +127,13 @@ void main() {
     bool passes = square < d[(j) - 1u]; \
     tied = tied || (counts && square == d[(j) - 1u]); \
     found[j] = sinks ? (passes ? found[(j) - 1u] : other) : found[j]; \
-    d[j] = min(d[j], max(d[(j) - 1u], square)); \
+    d[j] = sinks ? (passes ? d[(j) - 1u] : square) : d[j]; \
     sinks = passes; \
 }
                 EACH_BUT_FIRST_BACKWARDS(SINK)
                 d[0] = sinks ? square : d[0];
                 found[0] = sinks ? other : found[0];
-                last.square = min(bound, d[NEAREST - 1u]);
+                last.square = smaller(bound, d[NEAREST - 1u]);
 #else
                 Key key = Key(square, point.w);
                 counts = counts && before(key, last);

@@ -34,7 +34,7 @@ vec4 ball(uint i) {
 }
 
 uint touches(vec4 ball, vec3 low, vec3 high, uint bit) {
-    vec3 away = max(max(low - ball.xyz, ball.xyz - high), vec3(0.0));
+    vec3 away = larger(larger(low - ball.xyz, ball.xyz - high), vec3(0.0));
     return square_of(away) <= ball.w ? bit : 0u;
 }
 

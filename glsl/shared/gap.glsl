@@ -30,8 +30,8 @@ const vec4 GAP_SINES[GAP_GROUPS] = vec4[GAP_GROUPS](
 // Narrows the cell's extent in four directions by the bisector with the neighbour at q, |q| > 0.
 vec4 narrow(vec4 extent, vec4 cosines, vec4 sines, vec2 q, float half_square) {
     vec4 along = q.x * cosines + q.y * sines;
-    vec4 bisector = half_square / max(along, vec4(1e-6));
-    return min(extent, mix(vec4(UNBOUNDED), bisector, greaterThan(along, vec4(1e-6))));
+    vec4 bisector = half_square / larger(along, vec4(1e-6));
+    return smaller(extent, mix(vec4(UNBOUNDED), bisector, greaterThan(along, vec4(1e-6))));
 }
 
 // Squared distance to the farthest point of the surface g = A x2 + B y2 + C xy + E x + F y + D over the
@@ -40,11 +40,11 @@ float extent_of_cell(vec4 extent, vec4 cosines, vec4 sines, float c[6]) {
     vec4 x = extent * cosines, y = extent * sines;
     vec4 g = c[0] * x * x + c[1] * y * y + c[2] * x * y + c[3] * x + c[4] * y + c[5];
     vec4 square = extent * extent + g * g;
-    return max(max(square.x, square.y), max(square.z, square.w));
+    return larger(larger(square.x, square.y), larger(square.z, square.w));
 }
 
 float farthest_of(vec4 extent) {
-    return max(max(extent.x, extent.y), max(extent.z, extent.w));
+    return larger(larger(extent.x, extent.y), larger(extent.z, extent.w));
 }
 
 bool bounded(vec4 extent) {

@@ -40,7 +40,7 @@ void cells_around(GridInfo grid, vec3 center, float radius, out uvec3 low, out u
 bool ball_meets_cell(GridInfo grid, uvec3 cell, vec3 center, float radius) {
     vec3 low = grid.origin + vec3(cell) * grid.edge;
     vec3 high = grid.origin + vec3(cell + 1u) * grid.edge;
-    vec3 away = max(max(low - center, center - high), vec3(0.0));
+    vec3 away = larger(larger(low - center, center - high), vec3(0.0));
     return dot3(away, away) <= radius * radius;
 }
 

@@ -8,6 +8,28 @@
 
 #define NO_HIT 3.0e38 // farther than any hit; finite, so that no infinity enters a sum
 
+// The larger and the smaller of numbers, none of them a NaN: what GLSL's max and min do with those costs lavapipe three
+// operations more.
+float larger(float a, float b) {
+    return a < b ? b : a;
+}
+
+vec3 larger(vec3 a, vec3 b) {
+    return mix(a, b, lessThan(a, b));
+}
+
+vec4 larger(vec4 a, vec4 b) {
+    return mix(a, b, lessThan(a, b));
+}
+
+float smaller(float a, float b) {
+    return b < a ? b : a;
+}
+
+vec4 smaller(vec4 a, vec4 b) {
+    return mix(a, b, lessThan(b, a));
+}
+
 float dot3(vec3 a, vec3 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }

@@ -32,15 +32,6 @@ vec3 inverse_of(vec3 d) {
                       abs(d.z) > PARALLEL_INVERSE ? d.z : PARALLEL_INVERSE);
 }
 
-// max and min of numbers: what GLSL's say of NaNs costs lavapipe four operations more.
-vec4 larger_of(vec4 a, vec4 b) {
-    return mix(a, b, lessThan(a, b));
-}
-
-vec4 smaller_of(vec4 a, vec4 b) {
-    return mix(a, b, lessThan(b, a));
-}
-
 uint bits_of(vec4 near, vec4 far) {
     return (near.x <= far.x ? 1u : 0u) | (near.y <= far.y ? 2u : 0u) | (near.z <= far.z ? 4u : 0u)
         | (near.w <= far.w ? 8u : 0u);
@@ -58,15 +49,15 @@ uint met_children(uint node, vec3 o, vec3 d, vec3 inverse, float nearest) {
     begin -= size; // what each byte has too much
     vec3 enters = begin - margin, leaves = begin + margin;
     bvec3 back = lessThan(inverse, vec3(0.0));
-    vec4 near = larger_of(larger_of(bytes_of(back.x ? a.w : a.x) * size.x + enters.x, bytes_of(back.y ? b.x : a.y) * size.y + enters.y),
-                    larger_of(bytes_of(back.z ? b.y : a.z) * size.z + enters.z, vec4(0.0)));
-    vec4 far = smaller_of(smaller_of(bytes_of(back.x ? a.x : a.w) * size.x + leaves.x, bytes_of(back.y ? a.y : b.x) * size.y + leaves.y),
-                   smaller_of(bytes_of(back.z ? a.z : b.y) * size.z + leaves.z, vec4(nearest)));
+    vec4 near = larger(larger(bytes_of(back.x ? a.w : a.x) * size.x + enters.x, bytes_of(back.y ? b.x : a.y) * size.y + enters.y),
+                    larger(bytes_of(back.z ? b.y : a.z) * size.z + enters.z, vec4(0.0)));
+    vec4 far = smaller(smaller(bytes_of(back.x ? a.x : a.w) * size.x + leaves.x, bytes_of(back.y ? a.y : b.x) * size.y + leaves.y),
+                   smaller(bytes_of(back.z ? a.z : b.y) * size.z + leaves.z, vec4(nearest)));
     uint met = bits_of(near, far);
-    near = larger_of(larger_of(bytes_of(back.x ? c.y : b.z) * size.x + enters.x, bytes_of(back.y ? c.z : b.w) * size.y + enters.y),
-               larger_of(bytes_of(back.z ? c.w : c.x) * size.z + enters.z, vec4(0.0)));
-    far = smaller_of(smaller_of(bytes_of(back.x ? b.z : c.y) * size.x + leaves.x, bytes_of(back.y ? b.w : c.z) * size.y + leaves.y),
-              smaller_of(bytes_of(back.z ? c.x : c.w) * size.z + leaves.z, vec4(nearest)));
+    near = larger(larger(bytes_of(back.x ? c.y : b.z) * size.x + enters.x, bytes_of(back.y ? c.z : b.w) * size.y + enters.y),
+               larger(bytes_of(back.z ? c.w : c.x) * size.z + enters.z, vec4(0.0)));
+    far = smaller(smaller(bytes_of(back.x ? b.z : c.y) * size.x + leaves.x, bytes_of(back.y ? b.w : c.z) * size.y + leaves.y),
+              smaller(bytes_of(back.z ? c.x : c.w) * size.z + leaves.z, vec4(nearest)));
     met |= bits_of(near, far) << 4;
     int way = int(frame.w);
     vec3 toward = vec3(ivec3(bitfieldExtract(way, 16, 5), bitfieldExtract(way, 21, 5), bitfieldExtract(way, 26, 5)));

@@ -19,7 +19,7 @@ const NEAREST_CELLS: f64 = 64.0;
 /// Points a pixel up to which discs are faster than the grid, and than the tree: each picture bins all points anew.
 /// Measured in docs/benchmarks.md.
 const POINTS_PER_PIXEL: f64 = 4.0;
-const POINTS_PER_PIXEL_TO_TREE: f64 = 0.3;
+const POINTS_PER_PIXEL_TO_TREE: f64 = 1.0;
 /// Pixels from which on they are: the dispatches of the binning cost what they cost.
 const FEWEST_PIXELS: usize = 32_768;
 
@@ -58,6 +58,12 @@ impl Plan {
     #[must_use]
     pub fn camera_by_tree(&self) -> bool {
         self.primary != Primary::Grid && self.may_take_tree()
+    }
+
+    /// Whether any rays may go through the tree.
+    #[must_use]
+    pub fn takes_tree(&self) -> bool {
+        self.by_tree() || self.camera_by_tree()
     }
 
     fn may_take_tree(&self) -> bool {

@@ -24,10 +24,13 @@ const EDGE_PER_TRUST: f64 = 2.5;
 const CELLS_PER_POINT: f64 = 8.0;
 /// Pairs of cell and point a point, at most, before the exact test; even sets have about six.
 const PAIRS_PER_POINT: f64 = 48.0;
-/// Bytes a point of both, at most: with the 64 of its polynomial and the 10 of the tree, tracing holds 100. Of the pairs
-/// before the exact test, so many are listed.
-const BYTES_PER_POINT: f64 = 25.5;
+/// Bytes a point of both, at most: with the 64 of its polynomial, and the 10 of the tree where there is one, tracing holds
+/// 100. Of the pairs before the exact test, so many are listed.
+const BYTES_PER_POINT: f64 = 36.0;
+const BYTES_BESIDE_TREE: f64 = 25.5;
 const LISTED_PAIRS: f64 = 0.9;
+/// Cells along the longest axis of a grid that lists nothing.
+const COARSE: u32 = 32;
 /// Few points may still have this many cells and pairs.
 const ALWAYS_ALLOWED: f64 = 65_536.0;
 /// Neither cells (8 bytes) nor pairs (4 bytes) may outgrow one binding of 128 MiB, whatever the number of points.
@@ -91,6 +94,29 @@ impl Grids {
         Self::new(vec![(grid, Vec::new())])
     }
 
+    /// Where the points are, in one coarse grid that lists none of them: for rays that do not go through it.
+    #[must_use]
+    pub fn around(points: &[Point], outcomes: &[FitOutcome]) -> Self {
+        let balls = points.par_iter().zip(outcomes).with_min_len(1 << 14);
+        let none = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+        let joined = |a: [[f32; 3]; 2], b: [[f32; 3]; 2]| {
+            let of =
+                |side: usize, f: fn(f32, f32) -> f32| [0, 1, 2].map(|i| f(a[side][i], b[side][i]));
+            [of(0, f32::min), of(1, f32::max)]
+        };
+        let ball = |(point, outcome): (&Point, &FitOutcome)| match outcome.trust > 0.0 {
+            true => [-1.001, 1.001].map(|by| point.position.map(|x| x + by * outcome.trust)),
+            false => none,
+        };
+        let bounds = balls.map(ball).reduce(|| none, joined);
+        if bounds == none {
+            return Self::single(EMPTY);
+        }
+        let corners = bounds.map(|corner| (corner.map(f64::from), 0.0));
+        let alone = Share { of_all: 1.0, budget: BYTES_PER_POINT };
+        Self::single(plan_grid(&corners, 0.0, COARSE, alone))
+    }
+
     /// Cells of all, and between them those that are none.
     #[must_use]
     pub fn cell_count(&self) -> u32 {
@@ -151,9 +177,15 @@ const EMPTY: GridInfo =
 /// The grids over all trust balls; a single empty cell where no point carries a surface.
 ///
 /// `resolution` is the number of cells along the longest axis of a single grid, or 0: grids are chosen from the
-/// points. Either way edges grow until cells and pairs stay within bounds.
+/// points. Either way edges grow until cells and pairs stay within bounds, which are narrower `beside_tree`.
 #[must_use]
-pub fn plan_grids(points: &[Point], outcomes: &[FitOutcome], resolution: u32) -> Grids {
+pub fn plan_grids(
+    points: &[Point],
+    outcomes: &[FitOutcome],
+    resolution: u32,
+    beside_tree: bool,
+) -> Grids {
+    let budget = if beside_tree { BYTES_BESIDE_TREE } else { BYTES_PER_POINT };
     let carries = |outcome: &FitOutcome| outcome.trust > 0.0;
     let balls: Vec<Ball> = points
         .par_iter()
@@ -167,14 +199,22 @@ pub fn plan_grids(points: &[Point], outcomes: &[FitOutcome], resolution: u32) ->
     }
     let mut radii: Vec<f64> = balls.iter().map(|ball| ball.1).collect();
     if resolution > 0 {
-        return Grids::single(plan_grid(&balls, 0.0, resolution, 1.0));
+        return Grids::single(plan_grid(&balls, 0.0, resolution, Share { of_all: 1.0, budget }));
     }
-    let (grid, is_fine) = plan_fine(&balls, &mut radii, 1.0);
+    let (grid, is_fine) = plan_fine(&balls, &mut radii, Share { of_all: 1.0, budget });
     if is_fine {
         return Grids::single(grid);
     }
     let slots = (0..).zip(outcomes).filter(|(_, outcome)| carries(outcome)).map(|(slot, _)| slot);
-    Grids::new(split(Group { balls, slots: slots.collect() }))
+    Grids::new(split(Group { balls, slots: slots.collect() }, budget))
+}
+
+/// What a grid may take of all that all may.
+#[derive(Clone, Copy)]
+struct Share {
+    of_all: f64,
+    /// Bytes a point.
+    budget: f64,
 }
 
 /// Balls that one grid may hold, and the slots of their points, ascending.
@@ -198,12 +238,12 @@ impl Group {
 }
 
 /// Parts balls by size, then by place, until no grid is too coarse, or none can be parted, or there are many.
-fn split(all: Group) -> Vec<(GridInfo, Vec<u32>)> {
+fn split(all: Group, budget: f64) -> Vec<(GridInfo, Vec<u32>)> {
     let count = all.balls.len() as f64;
     let (mut done, mut groups) = (Vec::new(), VecDeque::from([all]));
     while let Some(group) = groups.pop_front() {
         let mut radii: Vec<f64> = group.balls.iter().map(|ball| ball.1).collect();
-        let share = radii.len() as f64 / count;
+        let share = Share { of_all: radii.len() as f64 / count, budget };
         let (grid, is_fine) = plan_fine(&group.balls, &mut radii, share);
         let may_part = done.len() + groups.len() + 2 <= MOST_LEVELS as usize;
         if !may_part || is_fine {
@@ -221,7 +261,7 @@ fn split(all: Group) -> Vec<(GridInfo, Vec<u32>)> {
 
 /// One grid over these balls, which are so large a share of all, and whether it is fine enough: for most of them, or
 /// where small ones crowd, for those.
-fn plan_fine(balls: &[Ball], radii: &mut [f64], share: f64) -> (GridInfo, bool) {
+fn plan_fine(balls: &[Ball], radii: &mut [f64], share: Share) -> (GridInfo, bool) {
     let least = small(radii);
     let grid = plan_grid(balls, median(radii), 0, share);
     if !is_too_coarse(&grid, balls, least) {
@@ -330,7 +370,7 @@ fn bounds_of(balls: &[Ball]) -> [[f64; 3]; 2] {
 }
 
 /// One grid over these balls, for this radius, as far as so large a share of all may have cells and pairs.
-fn plan_grid(balls: &[Ball], radius: f64, resolution: u32, share: f64) -> GridInfo {
+fn plan_grid(balls: &[Ball], radius: f64, resolution: u32, share: Share) -> GridInfo {
     let [low, high] = bounds_of(balls);
     let extent = [0, 1, 2].map(|axis| high[axis] - low[axis]);
     let longest = extent[0].max(extent[1]).max(extent[2]);
@@ -341,10 +381,10 @@ fn plan_grid(balls: &[Ball], radius: f64, resolution: u32, share: f64) -> GridIn
     // A coordinate's rounding must stay small beside a cell.
     edge = edge.max(longest * 1e-5);
     let allowed = |per_point: f64, most: f64| {
-        (per_point * balls.len() as f64).min(share * most).max(ALWAYS_ALLOWED)
+        (per_point * balls.len() as f64).min(share.of_all * most).max(ALWAYS_ALLOWED)
     };
     let most_bytes = match resolution {
-        0 => (BYTES_PER_POINT * balls.len() as f64).max(8.0 * ALWAYS_ALLOWED),
+        0 => (share.budget * balls.len() as f64).max(8.0 * ALWAYS_ALLOWED),
         _ => f64::INFINITY,
     };
     let is_too_fine = |edge: f64| {
@@ -409,7 +449,7 @@ mod tests {
             .iter()
             .map(|&(_, trust)| FitOutcome { trust, kind: 3, feature_size: trust })
             .collect();
-        plan_grids(&points, &outcomes, resolution)
+        plan_grids(&points, &outcomes, resolution, false)
     }
 
     #[test]

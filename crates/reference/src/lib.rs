@@ -139,7 +139,7 @@ impl<R: Real> Reference<R> {
         let mut polynomials: Vec<Polynomial<R>> =
             fitted.into_iter().map(|fit| fit.polynomial).collect();
         watch.stage("building the grid", 1);
-        let grids = plan_grids(&cloud.points, &outcomes, plan.grid_resolution);
+        let grids = plan_grids(&cloud.points, &outcomes, plan.grid_resolution, plan.takes_tree());
         let point_cells = if plan.refines() {
             grid_build::list_points(&grids, &polynomials, &cloud.order)
         } else {

@@ -612,7 +612,7 @@ fn needed(plan: &Plan, device: &Device, rays: u32) -> Needed {
     let looks_around = plan.scene_bits() & (SCENE_BLENDS | SCENE_VALUES) != 0;
     Needed {
         lists: looks_around || !(camera && others),
-        tree: fits && (camera || others),
+        tree: fits && plan.takes_tree(),
         point_cells: plan.refines(),
     }
 }

@@ -180,8 +180,14 @@ impl Surfaces {
             false => Buffer::new(device, "fit outcomes", size_of::<FitOutcome>() as u64)?,
         };
         watch.stage("building the grid", 1);
-        let grids = plan_grids(&cloud.points, &outcomes, resolution);
         let texels = bytes / 16 <= u64::from(device.limits().max_texel_buffer_elements);
+        let count = cloud.points.len() as u32;
+        let may_have_tree = needed.tree && Tree::fits(device, count);
+        let looks = needed.lists || refines || !may_have_tree;
+        let grids = match looks {
+            true => plan_grids(&cloud.points, &outcomes, resolution, needed.tree),
+            false => Grids::around(&cloud.points, &outcomes),
+        };
         let build = GridBuild::new(device, texels)?;
         let widest = outcomes.iter().map(|outcome| outcome.trust).fold(0.0, f32::max);
         let io = |(at, level): (usize, &GridLevel)| -> Result<GridBuildIo<'_>, GpuError> {
@@ -198,9 +204,10 @@ impl Surfaces {
         // Refinement asks for the points, the grid for their balls: those move at rims.
         let point_cells = if refines { build.list_points(&mut work, &levels)? } else { None };
         clip::clip_balls(device, &mut work, &polynomials, &rims.clips(&cloud.points, &outcomes))?;
-        let cells = u64::from(grids.cell_count());
-        let tree = match needed.tree && Tree::fits(device, cloud.points.len() as u32, cells) {
-            true => Some(Tree::build(device, &mut work, &polynomials, cloud.points.len() as u32)?),
+        // What goes through the tree reads cells as texels too.
+        let cells_fit = grids.cell_count() <= device.limits().max_texel_buffer_elements;
+        let tree = match may_have_tree && cells_fit {
+            true => Some(Tree::build(device, &mut work, &polynomials, count)?),
             false => None,
         };
         let is_listed = needed.lists || tree.is_none();

@@ -70,12 +70,12 @@ fn node_count(levels: &[Level]) -> u64 {
 }
 
 impl Tree {
-    /// Whether a device has room for the tree over so many points, each of its buffers in one binding or texel buffer;
-    /// and for its polynomials and so many cells in such buffers, since what goes through it reads these so.
-    pub(crate) fn fits(device: &Device, points: u32, cells: u64) -> bool {
+    /// Whether a device has room for the tree over so many points and for their polynomials, each of its buffers in
+    /// one binding or texel buffer.
+    pub(crate) fn fits(device: &Device, points: u32) -> bool {
         let (nodes, limits) = (node_count(&levels_over(points)), device.limits());
         let polynomials = (u64::from(points) * size_of::<Polynomial>() as u64) / 16;
-        let longest = polynomials.max(cells).max(nodes * NODE_BYTES / 16);
+        let longest = polynomials.max(nodes * NODE_BYTES / 16);
         nodes * size_of::<SearchNode>() as u64 <= limits.max_storage_buffer_range
             && longest <= u64::from(limits.max_texel_buffer_elements)
     }
