@@ -42,8 +42,10 @@ layout(push_constant) uniform Push { CameraTraceParams params; };
 #include "meeting.glsl"
 
 void main() {
-    uvec2 pixel = tile_pixel();
-    uint at = tile_ray(params.tile_size);
+    uvec2 groups = (params.tile_size + 7u) / 8u;
+    uvec2 group = uvec2(gl_WorkGroupID.x, spread(gl_WorkGroupID.y, groups.y));
+    uvec2 pixel = group * 8u + pixel_within(gl_LocalInvocationID.x);
+    uint at = (group.y * groups.x + group.x) * uint(TILE_GROUP) + gl_LocalInvocationID.x;
     bool outside = any(greaterThanEqual(pixel, params.tile_size));
     vec3 d = camera_direction(place_in_view(params.tile_origin + pixel, vec2(0.0)));
     Ray ray = new_ray(params.eye, d, outside ? NONE : enter_scene(params.eye, d), NONE);

@@ -9,6 +9,13 @@ uint list_index() {
     return gl_GlobalInvocationID.y * LINE_ROW + gl_GlobalInvocationID.x;
 }
 
+// Of `count` things, even ones first. Where a device's threads take workgroups in runs, as lavapipe's do, each
+// gets its share of every part of the picture.
+uint spread(uint i, uint count) {
+    uint evens = (count + 1u) / 2u;
+    return i < evens ? 2u * i : 2u * (i - evens) + 1u;
+}
+
 // A workgroup covers 8 x 8 pixels, each run of eight invocations 4 x 2 of them: rays that run
 // together should see the same cells.
 uvec2 pixel_within(uint i) {
