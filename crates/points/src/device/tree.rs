@@ -18,6 +18,8 @@ use std::sync::Arc;
 const NODE_BYTES: u64 = 64;
 /// Nodes of one dispatch: what it writes of them fits into any binding.
 const NODES_AT_ONCE: u32 = 1 << 20;
+/// Leaves at most: a ray has bits for the children of eight nodes above each other, and sets leaves aside by 24.
+const MOST_LEAVES: u32 = 7 << 21;
 /// A binding may begin at multiples of so many.
 const NODES_ALIGNED: u32 = (PART_ALIGNMENT / NODE_BYTES) as u32;
 
@@ -73,6 +75,9 @@ impl Tree {
     /// Whether a device has room for the tree over so many points and for their polynomials, each of its buffers in
     /// one binding or texel buffer.
     pub(crate) fn fits(device: &Device, points: u32) -> bool {
+        if points.div_ceil(LEAF_POINTS) > MOST_LEAVES {
+            return false;
+        }
         let (nodes, limits) = (node_count(&levels_over(points)), device.limits());
         let polynomials = (u64::from(points) * size_of::<Polynomial>() as u64) / 16;
         let longest = polynomials.max(nodes * NODE_BYTES / 16);
@@ -141,6 +146,14 @@ impl Tree {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_most_leaves_lie_under_eight_nodes() {
+        // Nodes with children to visit: all levels but the leaves.
+        assert_eq!(levels_over(MOST_LEAVES * LEAF_POINTS).len() - 1, 8);
+        assert_eq!(levels_over(MOST_LEAVES * LEAF_POINTS + 1).len() - 1, 9);
+        const { assert!(MOST_LEAVES <= 1 << 24) };
+    }
 
     #[test]
     fn levels_never_overlap_and_children_are_where_eight_times_their_parent_says() {
