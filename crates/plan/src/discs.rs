@@ -57,7 +57,12 @@ impl Plan {
     /// Whether camera rays that are not traced by discs do.
     #[must_use]
     pub fn camera_by_tree(&self) -> bool {
-        self.primary != Primary::Grid && self.may_take_tree()
+        let wanted = match self.primary {
+            Primary::Grid => false,
+            Primary::Discs => self.secondary != Secondary::Grid, // a tile that has too many of them
+            Primary::Tree | Primary::Auto => true,
+        };
+        wanted && self.may_take_tree()
     }
 
     /// Whether any rays may go through the tree.
