@@ -1,5 +1,5 @@
-// camera_trace: camera_rays, disc_trace or with TREE tree_trace, surface_hit and classify in one, for rays from the eye through the centres
-// of pixels that nothing but surfaces meets (section 4 of the paper).
+// camera_trace: camera_rays, disc_trace or with TREE tree_trace, surface_hit and classify in one, for rays from the
+// eye through the centres of pixels that nothing but surfaces meets (section 4 of the paper).
 //
 // reads   polynomials, objects, the lists of screen tiles; with TREE nodes
 //         grid, cells, slots   the polynomials around a hit, where normals are blended

@@ -5,7 +5,8 @@
 // writes  nodes            of this level
 //         boxes            around them; no box where all children are empty
 // runs    one invocation per node
-// twin    none: hits are those of any structure (crates/reference/src/grid_trace.rs), boxes are tested for what they hold
+// twin    none: hits are those of any structure (crates/reference/src/grid_trace.rs); boxes are tested for what they
+//         hold (tests/cases/tree.rs)
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define QUEUE // how polynomials are read
@@ -27,7 +28,7 @@ layout(push_constant) uniform Push { TreeLevelParams params; };
 bool child_box(uint at, out vec3 low, out vec3 high) {
 #ifdef LEAVES
     Polynomial p = polynomial_of(at);
-    patch_box(p.center_trust, p.gradient_offset, p.curvature, p.cross_terms, low, high);
+    patch_box(p, low, high);
     return p.center_trust.w > 0.0;
 #else
     SearchNode child = boxes[params.first_child + at];

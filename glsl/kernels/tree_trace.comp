@@ -9,7 +9,7 @@
 // runs    one invocation per ray of the wave; dispatched until no ray lives
 // twin    crates/reference/src/grid_trace.rs (hits are those of any structure)
 //
-// What grid_trace finds, to the bit: the nearest hit of all polynomials, or of equals the first. With LEAVES as there.
+// What grid_trace finds, to the bit: the nearest hit of all polynomials, or of equals the first. LEAVES as there.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define QUEUE

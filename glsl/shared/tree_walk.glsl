@@ -17,7 +17,7 @@
 layout(binding = TRACE_NODES) uniform usamplerBuffer node_texels; // four a node
 
 #define NODES_AT_ONCE 8u
-#define PARALLEL_INVERSE 1e-20 // a component under this
+#define PARALLEL_INVERSE 1e-20 // of a direction: what is less never arrives
 #define TREE_ROUNDING 9.5367e-7 // of distances: 2^-20, some steps of rounding of a ray's own and of a hit's
 
 // Bytes of a word, each b as the float 1 + b / 256: two operations, where a conversion takes three.
@@ -26,19 +26,24 @@ vec4 bytes_of(uint word) {
     return uintBitsToFloat((shifted & 0x7f8000u) | 0x3f800000u);
 }
 
-// One over a direction; a component that is none becomes one that never arrives.
-vec3 inverse_of(vec3 d) {
-    return 1.0 / vec3(abs(d.x) > PARALLEL_INVERSE ? d.x : PARALLEL_INVERSE, abs(d.y) > PARALLEL_INVERSE ? d.y : PARALLEL_INVERSE,
-                      abs(d.z) > PARALLEL_INVERSE ? d.z : PARALLEL_INVERSE);
+float inverse_of(float d) {
+    return 1.0 / (abs(d) > PARALLEL_INVERSE ? d : PARALLEL_INVERSE);
 }
 
-uint bits_of(vec4 near, vec4 far) {
+// Which of four boxes, lowest and highest bytes of which these are, the ray meets no farther than `nearest`, a bit each.
+uint met_four(uvec3 low, uvec3 high, vec3 size, vec3 enters, vec3 leaves, float nearest) {
+    bvec3 back = lessThan(size, vec3(0.0));
+    uvec3 first = mix(low, high, back), last = mix(high, low, back);
+    vec4 near = larger(larger(bytes_of(first.x) * size.x + enters.x, bytes_of(first.y) * size.y + enters.y),
+                       larger(bytes_of(first.z) * size.z + enters.z, vec4(0.0)));
+    vec4 far = smaller(smaller(bytes_of(last.x) * size.x + leaves.x, bytes_of(last.y) * size.y + leaves.y),
+                       smaller(bytes_of(last.z) * size.z + leaves.z, vec4(nearest)));
     return (near.x <= far.x ? 1u : 0u) | (near.y <= far.y ? 2u : 0u) | (near.z <= far.z ? 4u : 0u)
         | (near.w <= far.w ? 8u : 0u);
 }
 
-// The children of the node in memory whose boxes the ray meets no farther than `nearest`, a bit each; in bit 8, whether it is
-// to visit the last first.
+// The children of the node in memory whose boxes the ray meets no farther than `nearest`, a bit each; in bit 8, whether
+// it is to visit the last first. `inverse` is one over d.
 uint met_children(uint node, vec3 o, vec3 d, vec3 inverse, float nearest) {
     int at = int(4u * node);
     uvec4 frame = texelFetch(node_texels, at);
@@ -48,19 +53,10 @@ uint met_children(uint node, vec3 o, vec3 d, vec3 inverse, float nearest) {
     vec3 margin = TREE_ROUNDING * (abs(begin) + abs(size));
     begin -= size; // what each byte has too much
     vec3 enters = begin - margin, leaves = begin + margin;
-    bvec3 back = lessThan(inverse, vec3(0.0));
-    vec4 near = larger(larger(bytes_of(back.x ? a.w : a.x) * size.x + enters.x, bytes_of(back.y ? b.x : a.y) * size.y + enters.y),
-                    larger(bytes_of(back.z ? b.y : a.z) * size.z + enters.z, vec4(0.0)));
-    vec4 far = smaller(smaller(bytes_of(back.x ? a.x : a.w) * size.x + leaves.x, bytes_of(back.y ? a.y : b.x) * size.y + leaves.y),
-                   smaller(bytes_of(back.z ? a.z : b.y) * size.z + leaves.z, vec4(nearest)));
-    uint met = bits_of(near, far);
-    near = larger(larger(bytes_of(back.x ? c.y : b.z) * size.x + enters.x, bytes_of(back.y ? c.z : b.w) * size.y + enters.y),
-               larger(bytes_of(back.z ? c.w : c.x) * size.z + enters.z, vec4(0.0)));
-    far = smaller(smaller(bytes_of(back.x ? b.z : c.y) * size.x + leaves.x, bytes_of(back.y ? b.w : c.z) * size.y + leaves.y),
-              smaller(bytes_of(back.z ? c.x : c.w) * size.z + leaves.z, vec4(nearest)));
-    met |= bits_of(near, far) << 4;
+    uint met = met_four(a.xyz, uvec3(a.w, b.xy), size, enters, leaves, nearest)
+        | met_four(uvec3(b.zw, c.x), c.yzw, size, enters, leaves, nearest) << 4;
     int way = int(frame.w);
-    vec3 toward = vec3(ivec3(bitfieldExtract(way, 16, 5), bitfieldExtract(way, 21, 5), bitfieldExtract(way, 26, 5)));
+    vec3 toward = vec3(bitfieldExtract(way, 16, 5), bitfieldExtract(way, 21, 5), bitfieldExtract(way, 26, 5));
     return (met & (frame.w >> 8) & 255u) | (dot3(toward, d) < 0.0 ? 256u : 0u);
 }
 
@@ -76,11 +72,11 @@ TreePlace before_root() {
     return TreePlace(0u, uvec2(1u, 0u), 0u); // the root is the first child of what would be above it
 }
 
-// Goes on with a ray from where it is; whether it has not ended. With LEAVES it starts on a surface, whose own sheet it does
-// not meet again at once, and ends at `any_hit`, if so; an object is `passed`.
+// Goes on with a ray from where it is; whether it has not ended. With LEAVES it starts on a surface, whose own sheet it
+// does not meet again at once, and ends at `any_hit`, if so; an object is `passed`.
 bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, bool any_hit, uint passed) {
     vec3 o = ray.origin, d = ray.direction;
-    vec3 inverse = inverse_of(d);
+    vec3 inverse = vec3(inverse_of(d.x), inverse_of(d.y), inverse_of(d.z));
     uint node = place.node, backwards = place.backwards;
     uvec2 pending = place.pending;
     bool alive = ray.cell != NONE;
@@ -110,7 +106,8 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
             uint up = uint(findLSB(far_up ? pending.y : pending.x)) / 8u;
             pending = far_up ? uvec2(pending.y, 0u) : pending;
             uint shift = 8u * up;
-            pending = uvec2((pending.x >> shift) | (shift == 0u ? 0u : pending.y << (32u - shift)), pending.y >> shift);
+            uint from_above = shift == 0u ? 0u : pending.y << (32u - shift);
+            pending = uvec2((pending.x >> shift) | from_above, pending.y >> shift);
             up += far_up ? 4u : 0u;
             node >>= 3u * up;
             backwards >>= up;
@@ -129,7 +126,8 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
             set1 = sets_aside ? set0 : set1;
             set0 = sets_aside ? ((below - tree.first_leaf) << 8) | children : set0;
             node = descends ? below : node;
-            pending = descends ? uvec2((pending.x << 8) | children, (pending.y << 8) | (pending.x >> 24)) : pending;
+            uvec2 deeper = uvec2((pending.x << 8) | children, (pending.y << 8) | (pending.x >> 24));
+            pending = descends ? deeper : pending;
             backwards = descends ? (backwards << 1) | (met >> 8) : backwards;
             --looks;
         }
@@ -149,7 +147,7 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
 #else
             float from = 0.0;
 #endif
-            // The test of all lists: from far away, what `intersect` says of the rim of a ball is a matter of rounding.
+            // The test of all lists: from far away, what `intersect` says of a ball's rim is a matter of rounding.
             bool near = near_trust_ball(o, d, p.center_trust, ray.hit_t);
             float t = near ? intersect(o, d, p, from) : NO_HIT;
 #ifdef LEAVES

@@ -1,4 +1,5 @@
-//! Primary rays by discs (\[T\] §4): when, and how the points of a screen tile are ordered.
+//! How rays find their hits: primary ones by discs (\[T\] §4), and how the points of a screen tile are ordered; through
+//! the tree; through the grid.
 
 use crate::{Diagnostic, Plan, Primary, RayLoop, Secondary, Window};
 use kernels::layout::{

@@ -5,6 +5,7 @@
 //! are the rays from its diffuse hits towards each light. Between waves the rays that go on are moved
 //! together, so that those that ended cost nothing.
 
+mod first_wave;
 mod in_volumes;
 mod to_the_end;
 
@@ -12,15 +13,15 @@ use crate::RenderError;
 use crate::budget::Budget;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
-    AlbedoIo, CameraRays, CameraRaysIo, CameraTrace, CameraTraceIo, CameraWay, Classify,
-    ClassifyIo, DiscTrace, GridTrace, Isosurface, ListMarked, March, Marks, PointLight, Refine,
-    Scatter, ScatterIo, Shade, ShadeIo, ShadowRays, ShadowRaysIo, SurfaceHit, TreeTrace,
+    AlbedoIo, CameraRays, CameraTrace, Classify, ClassifyIo, DiscTrace, GridTrace, Isosurface,
+    ListMarked, March, Marks, PointLight, Refine, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays,
+    ShadowRaysIo, SurfaceHit, TreeTrace,
 };
 use crate::samples::Samples;
 use crate::state::{RayLoop, RayState};
 use crate::volumes::VolumeBuffers;
 use crate::wave::WaveBuffers;
-use gpu::{Buffer, Device, Recorder, Timings};
+use gpu::{Buffer, Device, Recorder};
 use kernels::layout::{
     FilmPixel, Hit, Path, Polynomial, SCENE_BLENDS, SCENE_LEVELS, SCENE_SKIPS, SCENE_VALUES,
     WAVE_SHARES_PATH, WaveParams,
@@ -372,68 +373,6 @@ impl Renderer {
         Ok(())
     }
 
-    fn start_rays(&mut self, plan: &Plan, tile: &Window, sample: u32) {
-        let io = CameraRaysIo {
-            grid_levels: &self.surfaces.grid_levels,
-            filter: &self.filter,
-            start: &self.camera_path,
-            state: &self.state.current,
-            paths: self.wave.paths(),
-        };
-        let params = plan.camera_of(tile, sample);
-        self.passes.camera_rays.record(&mut self.recorder, io, &params);
-    }
-
-    /// The first wave in one pass, if screen tiles are listed or there is a tree, its rays meet nothing but surfaces, and
-    /// all of them end within one pass's work.
-    fn trace_at_once(
-        &mut self,
-        plan: &Plan,
-        tile: &Window,
-        params: &WaveParams,
-        stats: &mut FrameStats,
-    ) -> Result<Option<Classes>, RenderError> {
-        let may_end = self.form == RayLoop::Queue && self.ends_at_once;
-        if !(may_end && plan.looks_through_centers() && plan.meets_surfaces_alone()) {
-            return Ok(None);
-        }
-        let way = match (self.discs.lists(), &self.surfaces.tree) {
-            (Some(lists), _) if plan.by_discs(tile) => CameraWay::Discs(lists),
-            (_, Some(tree)) if plan.camera_by_tree() => CameraWay::Tree(tree),
-            _ => return Ok(None),
-        };
-        let io = CameraTraceIo {
-            way,
-            surfaces: &self.surfaces,
-            objects: &self.objects,
-            images: &self.images,
-            texels: &self.texels,
-            film: &self.film,
-            state: self.state.started(),
-            hits: &self.hits,
-            wave: &self.wave,
-            live: &self.live,
-        };
-        let work = self.budget.work();
-        let traced = plan.camera_trace_of(tile, &self.surfaces.grids, work);
-        self.recorder.fill(&self.live, 0, 4, 0);
-        record_no_marks(&mut self.recorder, &self.wave, plan, params);
-        self.passes.camera_trace.record(&mut self.recorder, io, &traced);
-        self.record_lists(plan, params);
-        let timings = self.recorder.submit()?;
-        stats.add_kernels(&timings.passes);
-        stats.traversal.add(Traced::Camera, &timings.passes);
-        stats.passes += 1;
-        let mut left = [0];
-        self.live.read(0, &mut left)?;
-        self.budget.passed(timings.passes.iter().map(|pass| pass.1).sum(), left != [0]);
-        if left == [0] {
-            return Ok(Some(self.read_classes(plan, params)?));
-        }
-        self.ends_at_once = self.budget.work() > work; // with more, they may
-        Ok(None)
-    }
-
     /// From what has become of a wave's rays to light and the next wave, whose parameters these are then.
     fn go_on(
         &mut self,
@@ -473,21 +412,6 @@ impl Renderer {
             false => [0; 2],
         };
         Ok(Classes { lit, scattering, next })
-    }
-
-    /// Lists the points of each screen tile, if this tile is to be traced by discs; whether it is.
-    fn bin_discs(
-        &mut self,
-        plan: &Plan,
-        tile: &Window,
-        stats: &mut FrameStats,
-    ) -> Result<bool, RenderError> {
-        if !plan.by_discs(tile) {
-            return Ok(false);
-        }
-        let mut timed = |timings: &Timings| stats.add_kernels(&timings.passes);
-        let lists = self.discs.bin(&mut self.recorder, plan, tile, &self.surfaces, &mut timed)?;
-        Ok(lists.is_some())
     }
 
     /// What becomes of each ray of a wave.

@@ -138,7 +138,7 @@ impl GridBuild {
         Kernel::new(device, name, module, bindings, size_of::<GridParams>())
     }
 
-    /// Where nobody asks for them: one word each, which is not read.
+    /// Where nobody asks for them: something to bind, which is not read.
     pub fn no_lists(&self) -> Result<GridLists, GpuError> {
         let empty = |name| Buffer::new(&self.device, name, 16);
         Ok(GridLists { cells: empty("cells")?, slots: empty("cell slots")? })

@@ -151,8 +151,8 @@ pub struct Needed {
 
 impl Surfaces {
     /// Fits every point of the cloud and sorts the fits into grids. `fits` has one entry an object;
-    /// `resolution` is the number of cells along the grid's longest axis, 0: chosen. `stand_ins` come behind the polynomials of all points, and in
-    /// no cell.
+    /// `resolution` is the number of cells along the grid's longest axis, 0: chosen. `stand_ins` come behind the
+    /// polynomials of all points, and in no cell and no node.
     ///
     /// # Errors
     /// A device without the memory, a buffer over its limits, a lost device, an interruption.

@@ -2,7 +2,7 @@
 
 use super::{FrameStats, Renderer, Traced};
 use crate::RenderError;
-use crate::passes::{DiscTraceIo, GridTraceIo, RefineIo, Start, SurfaceHitIo};
+use crate::passes::{DiscTraceIo, RefineIo, Start, SurfaceHitIo, TraceIo};
 use kernels::layout::{Hit, NONE, TraceParams};
 use plan::Plan;
 use points::Watch;
@@ -67,7 +67,7 @@ impl Renderer {
                     live_marks.record_none(&mut self.recorder, params.ray_count);
                     let live_rays = &live_rays[0];
                     let marks = &live_marks.bits;
-                    let io = GridTraceIo { surfaces, state, live, marks, live_rays };
+                    let io = TraceIo { surfaces, state, live, marks, live_rays };
                     match &surfaces.tree {
                         Some(tree) if by_tree => {
                             let rec = &mut self.recorder;

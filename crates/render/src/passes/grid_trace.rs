@@ -12,7 +12,7 @@ use points::device::Surfaces;
 use std::sync::Arc;
 
 /// What the pass works on.
-pub(crate) struct GridTraceIo<'a> {
+pub(crate) struct TraceIo<'a> {
     pub surfaces: &'a Surfaces,
     pub state: &'a RayState,
     /// One u32, zero before: how many rays have not ended.
@@ -58,13 +58,7 @@ impl GridTrace {
     }
 
     /// Records one pass; the caller then swaps the ray state, unless rays are listed.
-    pub fn record(
-        &self,
-        rec: &mut Recorder,
-        io: GridTraceIo<'_>,
-        start: Start,
-        params: &TraceParams,
-    ) {
+    pub fn record(&self, rec: &mut Recorder, io: TraceIo<'_>, start: Start, params: &TraceParams) {
         let kernel = match start {
             Start::Camera => &self.from_camera,
             Start::Surface => &self.leaving,

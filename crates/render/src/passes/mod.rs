@@ -30,7 +30,7 @@ pub(crate) use disc_count::DiscCount;
 pub(crate) use disc_emit::DiscEmit;
 pub(crate) use disc_ranges::DiscRanges;
 pub(crate) use disc_trace::{DiscTrace, DiscTraceIo};
-pub(crate) use grid_trace::{GridTrace, GridTraceIo, Start};
+pub(crate) use grid_trace::{GridTrace, Start, TraceIo};
 pub(crate) use isosurface::{Isosurface, IsosurfaceIo, Searching};
 pub(crate) use march::{March, MarchIo, Marched};
 pub(crate) use marked::{ListMarked, Marks};

@@ -1,6 +1,6 @@
 //! The pass `tree_trace`.
 
-use super::{GridTraceIo, Start};
+use super::{Start, TraceIo};
 use crate::state::{RayLoop, Touch};
 use gpu::{Binding, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
@@ -39,7 +39,7 @@ impl TreeTrace {
     pub fn record(
         &self,
         rec: &mut Recorder,
-        io: GridTraceIo<'_>,
+        io: TraceIo<'_>,
         tree: &Tree,
         start: Start,
         params: &TraceParams,
