@@ -16,6 +16,10 @@
 // A workgroup is one screen tile. A ray travels in registers from the eye to its pixel: no state is stored.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifndef TREE
+#extension GL_KHR_shader_subgroup_ballot : require
+#define PACKETS
+#endif
 #define QUEUE // how lists are read
 #define LISTS
 #define STATE_WRITES
@@ -41,11 +45,24 @@ layout(push_constant) uniform Push { CameraTraceParams params; };
 #include "marks.glsl"
 #include "meeting.glsl"
 
+#ifdef PACKETS
+#define PACKET_MARGIN 0.03125 // of a pixel: its place is rounded by less than a hundredth of one
+
+// The packet of 4 x 2 pixels whose first that is.
+Packet packet_from(uvec2 pixel) {
+    vec2 first = place_in_view(params.tile_origin + pixel, vec2(-PACKET_MARGIN));
+    vec2 last = place_in_view(params.tile_origin + pixel, vec2(3.0, 1.0) + PACKET_MARGIN);
+    return Packet(normalize3(params.right - first.x * params.forward), normalize3(last.x * params.forward - params.right),
+                  normalize3(params.up - last.y * params.forward), normalize3(first.y * params.forward - params.up));
+}
+#endif
+
 void main() {
     uvec2 groups = (params.tile_size + 7u) / 8u;
     uvec2 group = uvec2(gl_WorkGroupID.x, spread(gl_WorkGroupID.y, groups.y));
-    uvec2 pixel = group * 8u + pixel_within(gl_LocalInvocationID.x);
-    uint at = (group.y * groups.x + group.x) * uint(TILE_GROUP) + gl_LocalInvocationID.x;
+    uint within = gl_LocalInvocationID.x;
+    uvec2 pixel = group * 8u + pixel_within(within);
+    uint at = (group.y * groups.x + group.x) * uint(TILE_GROUP) + within;
     bool outside = any(greaterThanEqual(pixel, params.tile_size));
     vec3 d = camera_direction(place_in_view(params.tile_origin + pixel, vec2(0.0)));
     Ray ray = new_ray(params.eye, d, outside ? NONE : enter_scene(params.eye, d), NONE);
@@ -54,7 +71,8 @@ void main() {
     bool alive = walk_tree(ray, place, params.tree, params.work, false, NONE);
 #else
     uvec2 tile = pixel / uint(DISC_TILE);
-    walk_discs(ray, disc_range_of(tile.y * screen_tiles(params.tile_size).x + tile.x), params.ranks, params.work);
+    Packet packet = packet_from(group * 8u + pixel_within(within & ~(PACKET - 1u)));
+    walk_discs(ray, disc_range_of(tile.y * screen_tiles(params.tile_size).x + tile.x), params.ranks, params.work, packet);
     bool alive = ray.cell != NONE;
 #endif
     if (alive) atomicAdd(live, 1u);

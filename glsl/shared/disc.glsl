@@ -8,6 +8,7 @@
 #define DISC_GLSL
 #include "layout.glsl"
 #include "math.glsl"
+#include "records.glsl"
 
 #define DISC_GROWTH 1.0001     // of the trust radius
 #define DISTANCE_ERROR 4e-6    // of the distance from the eye
@@ -15,6 +16,7 @@
 #define STEEPEST 1e6           // a tangent closer to the eye's plane than that bounds nothing
 #define UNBOUNDED 1e20
 
+// Screen tiles as a rectangle.
 struct TileSpan {
     uvec2 low;    // first screen tile along x and y
     uvec2 extent; // tiles along x and y; 0: the disc covers no pixel
@@ -65,6 +67,49 @@ TileSpan disc_tiles(CameraParams camera, vec3 from_eye, float trust) {
     bool none = trust <= 0.0 || z < -r || along_x.x > along_x.y || along_y.x > along_y.y;
     return TileSpan(uvec2(along_x.x, along_y.x),
                     none ? uvec2(0u) : uvec2(along_x.y - along_x.x, along_y.y - along_y.x) + 1u);
+}
+
+// The discs of a leaf's points.
+struct LeafDiscs {
+    TileSpan spans[LEAF_POINTS];
+    TileSpan around; // all of them
+    float nearest;   // distance from the eye to any of the trust balls, a lower bound
+};
+
+LeafDiscs discs_of_leaf(DiscParams params, uint leaf) {
+    LeafDiscs discs;
+    uvec2 low = uvec2(NONE), end = uvec2(0u);
+    float nearest = NO_HIT;
+    for (uint i = 0u; i < LEAF_POINTS; ++i) {
+        uint slot = leaf * LEAF_POINTS + i;
+        vec4 ball = center_trust_of(slot);
+        vec3 from_eye = ball.xyz - params.camera.eye;
+        TileSpan span = disc_tiles(params.camera, from_eye, slot < params.point_count ? ball.w : 0.0);
+        float distance = sqrt(dot3(from_eye, from_eye)) - disc_radius(from_eye, ball.w);
+        bool covers = span.extent.x > 0u;
+        low = covers ? min(low, span.low) : low;
+        end = covers ? max(end, span.low + span.extent) : end;
+        nearest = covers ? smaller(nearest, distance) : nearest;
+        discs.spans[i] = span;
+    }
+    discs.around = TileSpan(low, end.x > 0u ? end - low : uvec2(0u));
+    discs.nearest = nearest;
+    return discs;
+}
+
+// Which of a leaf's points cover a screen tile, a bit each.
+uint covering(LeafDiscs discs, uvec2 tile) {
+    uint points = 0u;
+    for (uint i = 0u; i < LEAF_POINTS; ++i) {
+        uvec2 at = tile - discs.spans[i].low; // before it: past it
+        points |= at.x < discs.spans[i].extent.x && at.y < discs.spans[i].extent.y ? 1u << i : 0u;
+    }
+    return points;
+}
+
+// The screen tile after another, row after row.
+uvec2 tile_after(uvec2 tile, TileSpan span) {
+    return tile.x + 1u == span.low.x + span.extent.x ? uvec2(span.low.x, tile.y + 1u) : uvec2(tile.x + 1u, tile.y);
 }
 
 // Ranks distances along a ray: a lesser one never has a greater rank. The float's own bits, so that

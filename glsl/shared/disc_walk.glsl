@@ -4,12 +4,15 @@
 // reads   the lists of screen tiles
 //         ranges           first and past-the-last entry of each in keys and slots
 //         keys             front to back within a tile
-//         slots            the points
+//         leaves           four at a time, and which of their points cover the tile
 // A ray ends where its hit is nearer than all that the list has left, or with the list. The way can end after
-// any 32 points; the cursor says where to go on.
+// any four leaves; the cursor says where to go on.
 #ifndef DISC_WALK_GLSL
 #define DISC_WALK_GLSL
 #include "disc.glsl"
+#ifdef PACKETS
+#include "packet.glsl"
+#endif
 #include "polynomial.glsl"
 #include "records.glsl"
 #include "state.glsl"
@@ -17,7 +20,7 @@
 #ifdef QUEUE
 layout(binding = DISC_RANGES_IN) uniform usamplerBuffer disc_ranges; // two values a tile
 layout(binding = DISC_KEYS_IN) uniform usamplerBuffer disc_keys; // one each
-layout(binding = DISC_SLOTS_IN) uniform usamplerBuffer disc_slots; // four
+layout(binding = DISC_LEAVES_IN) uniform usamplerBuffer disc_leaves; // four
 
 uvec2 disc_range_of(uint tile) {
     return texelFetch(disc_ranges, int(tile)).xy;
@@ -27,17 +30,13 @@ uint disc_key_at(uint place) {
     return texelFetch(disc_keys, int(place)).x;
 }
 
-uint disc_slot_at(uint place) {
-    return texelFetch(disc_slots, int(place / 4u))[place & 3u];
-}
-
-uvec4 four_disc_slots_at(uint place) {
-    return texelFetch(disc_slots, int(place / 4u));
+uvec4 four_disc_leaves_at(uint place) {
+    return texelFetch(disc_leaves, int(place / 4u));
 }
 #else
 layout(std430, binding = DISC_RANGES_IN) readonly buffer DiscRanges { uvec2 disc_ranges[]; };
 layout(std430, binding = DISC_KEYS_IN) readonly buffer DiscKeys { uint disc_keys[]; };
-layout(std430, binding = DISC_SLOTS_IN) readonly buffer DiscSlots { uint disc_slots[]; };
+layout(std430, binding = DISC_LEAVES_IN) readonly buffer DiscLeaves { uint disc_leaves[]; };
 
 uvec2 disc_range_of(uint tile) {
     return disc_ranges[tile];
@@ -47,20 +46,54 @@ uint disc_key_at(uint place) {
     return disc_keys[place];
 }
 
-uint disc_slot_at(uint place) {
-    return disc_slots[place];
-}
-
 // Those from a multiple of four on; the list has room for four.
-uvec4 four_disc_slots_at(uint place) {
-    return uvec4(disc_slots[place], disc_slots[place + 1u], disc_slots[place + 2u], disc_slots[place + 3u]);
+uvec4 four_disc_leaves_at(uint place) {
+    return uvec4(disc_leaves[place], disc_leaves[place + 1u], disc_leaves[place + 2u], disc_leaves[place + 3u]);
 }
 #endif
 
-#define BATCH 32u // points tested before any is solved: one bit each
+#define LEAF_MASK ((1u << LEAF_BITS) - 1u)
+#define LEAVES_AT_ONCE 4u // a bit for each of their points
 
-// Goes on with the ray, whose cell is NONE if it has ended, and afterwards where it has.
+uint one_of(uvec4 four, uint i) {
+    return i < 2u ? (i == 0u ? four.x : four.y) : (i == 2u ? four.z : four.w);
+}
+
+uint slot_of_bit(uvec4 leaves, uint bit) {
+    return (one_of(leaves, bit / LEAF_POINTS) & LEAF_MASK) * LEAF_POINTS + bit % LEAF_POINTS;
+}
+
+// Which points of four leaves the list has from `next` on and before `end`, a bit each.
+uint listed_points(uvec4 leaves, uint first, uint next, uint end) {
+    uvec4 points = leaves >> LEAF_BITS;
+    uint all = (points.x | (points.y << LEAF_POINTS)) | ((points.z << (2u * LEAF_POINTS)) | (points.w << (3u * LEAF_POINTS)));
+    uint before = LEAF_POINTS * (next - first), behind = LEAF_POINTS * (first + LEAVES_AT_ONCE - end);
+    return all & (~0u << before) & (~0u >> behind); // next < end
+}
+
+#ifdef PACKETS
+// Which of those points a ray of the packet may meet: each lane asks for one of a leaf.
+uint met_by_packet(uint points, uvec4 leaves, Packet packet, vec3 eye) {
+    uint met = 0u;
+    for (uint i = 0u; i < LEAVES_AT_ONCE; ++i) {
+        uint shift = LEAF_POINTS * i;
+        if (((points >> shift) & 255u) != 0u) {
+            vec4 ball = center_trust_of(slot_of_bit(leaves, shift + packet_lane()));
+            vec3 from_eye = ball.xyz - eye;
+            met |= packet_ballot(meets_packet(packet, from_eye, disc_radius(from_eye, ball.w))) << shift;
+        }
+    }
+    return points & met;
+}
+#endif
+
+// Goes on with the ray, whose cell is NONE if it has ended, and afterwards where it has. In PACKETS the rays of one
+// go together, from the beginning of their list.
+#ifdef PACKETS
+void walk_discs(inout Ray ray, uvec2 range, DepthRanks ranks, uint work, Packet packet) {
+#else
 void walk_discs(inout Ray ray, uvec2 range, DepthRanks ranks, uint work) {
+#endif
     vec3 o = ray.origin, d = ray.direction;
     uint rank_mask = (1u << ranks.bits) - 1u;
     uint work_left = work;
@@ -73,22 +106,29 @@ void walk_discs(inout Ray ray, uvec2 range, DepthRanks ranks, uint work) {
         hit_index = hit.index;
     }
 
+#ifdef PACKETS
+    while (packet_ballot(alive) != 0u && work_left > 0u) {
+#else
     while (alive && work_left > 0u) {
-        uint first = next & ~3u; // slots are read four at a time
-        uint end = min(range.y, first + BATCH);
+#endif
+        uint first = next & ~(LEAVES_AT_ONCE - 1u);
+        uint end = min(range.y, first + LEAVES_AT_ONCE);
+        uvec4 leaves = four_disc_leaves_at(first);
+        uint asked = listed_points(leaves, first, next, end);
+        ray.tests += alive ? uint(bitCount(asked)) : 0u;
+#ifdef PACKETS
+        asked = met_by_packet(asked, leaves, packet, o);
+#endif
+        uint tested = uint(bitCount(asked));
         uint candidates = 0u;
-        for (uint at_four = first; at_four < end; at_four += 4u) {
-            uvec4 four = four_disc_slots_at(at_four);
-            uint near = near_trust_ball(o, d, center_trust_of(four.x), ray.hit_t) ? 1u : 0u;
-            near |= near_trust_ball(o, d, center_trust_of(four.y), ray.hit_t) ? 2u : 0u;
-            near |= near_trust_ball(o, d, center_trust_of(four.z), ray.hit_t) ? 4u : 0u;
-            near |= near_trust_ball(o, d, center_trust_of(four.w), ray.hit_t) ? 8u : 0u;
-            candidates |= near << (at_four - first);
+        while (asked != 0u) {
+            uint bit = uint(findLSB(asked));
+            asked &= asked - 1u;
+            bool near = near_trust_ball(o, d, center_trust_of(slot_of_bit(leaves, bit)), ray.hit_t);
+            candidates |= near && alive ? 1u << bit : 0u;
         }
-        candidates &= (~0u << (next - first)) & (~0u >> (first + BATCH - end)); // next < end
-        uint solved = 0u;
         while (candidates != 0u) {
-            uint slot = disc_slot_at(first + uint(findLSB(candidates)));
+            uint slot = slot_of_bit(leaves, uint(findLSB(candidates)));
             candidates &= candidates - 1u;
             Polynomial p = polynomial_of(slot);
             float t = intersect(o, d, p, 0.0);
@@ -99,14 +139,12 @@ void walk_discs(inout Ray ray, uvec2 range, DepthRanks ranks, uint work) {
             ray.hit_slot = better ? slot : ray.hit_slot;
             hit_object = better ? p.object : hit_object;
             hit_index = better ? p.index : hit_index;
-            ++solved;
         }
-        ray.tests += end - next;
         next = end;
-        work_left -= min(work_left, (end - first + 3u) / 4u + solved + 2u);
+        work_left -= min(work_left, 2u * tested + 2u); // the same for all of a packet
         bool more = next < range.y;
         uint rank = disc_key_at(more ? next : range.x) & rank_mask;
-        alive = more && rank <= depth_rank(ranks, ray.hit_t);
+        alive = alive && more && rank <= depth_rank(ranks, ray.hit_t);
     }
     ray.cell = alive ? ray.cell : NONE;
     ray.cursor = next - range.x;

@@ -19,7 +19,7 @@
 #define DISC_TILE 8 // pixels a screen tile has along each side: those of one workgroup
 #define DISC_OFFSETS 1
 #define DISC_KEYS 2
-#define DISC_SLOTS 3
+#define DISC_LEAVES 3
 #define DISC_TILES 4
 
 // fit_polynomials
@@ -195,7 +195,7 @@
 #define MARCH_VISIBLE 43
 #define DISC_RANGES_IN 44 // camera_trace and disc_trace read the lists of screen tiles
 #define DISC_KEYS_IN 45
-#define DISC_SLOTS_IN 46
+#define DISC_LEAVES_IN 46
 #define WAVE_LIT_HITS 47
 #define WAVE_MARKS 48
 #define WAVE_SCATTERING 49

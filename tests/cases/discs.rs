@@ -5,6 +5,7 @@ use harness::{
     Bench, Rendered, assert_same_bits, assert_same_film, fibonacci_sphere, plan_of, random,
     render_twin, set_of, wavy_sheet,
 };
+use kernels::layout::LEAF_POINTS;
 use plan::{Diagnostic, MAX_DISC_PAIRS, Plan, Primary, RayLoop};
 use points::{PointSet, Unwatched};
 use reference::Reference;
@@ -169,7 +170,7 @@ fn screen_tiles_list_what_the_twin_lists() {
             (lists.ranks, pairs)
         });
         assert_eq!(ranks, twin.ranks);
-        assert!(tiles == twin.tiles && pairs == [twin.keys, twin.slots], "{settings}");
+        assert!(tiles == twin.tiles && pairs == [twin.keys, twin.leaves], "{settings}");
     }
 }
 
@@ -209,7 +210,7 @@ fn too_many_pairs_fall_back_to_the_grid() {
     let sets = [set_of(wavy_sheet(2_000))];
     let [mut by_grid, mut by_discs] =
         [Primary::Grid, Primary::Discs].map(|primary| plan(text, &sets, primary));
-    assert!(2_000 * plan::screen_tiles(&by_discs.window) > MAX_DISC_PAIRS);
+    assert!(2_000 / LEAF_POINTS * plan::screen_tiles(&by_discs.window) > MAX_DISC_PAIRS);
     for plan in [&mut by_grid, &mut by_discs] {
         plan.diagnostics = Diagnostic::ALL.to_vec();
     }

@@ -36,6 +36,8 @@ pub struct Limits {
     pub timestamp_period: f32,
     /// Texels of a buffer bound as [`Binding::UniformTexelBuffer`](crate::Binding).
     pub max_texel_buffer_elements: u32,
+    /// Invocations that run together and can vote in a compute kernel; zero where they cannot.
+    pub subgroup_size: u32,
     /// Bytes of the largest memory heap that is local to the device.
     pub heap_bytes: u64,
 }
@@ -279,6 +281,12 @@ fn limits(
 ) -> Limits {
     // SAFETY: `physical` belongs to this instance.
     let memory = unsafe { instance.raw().get_physical_device_memory_properties(physical) };
+    let mut subgroups = vk::PhysicalDeviceSubgroupProperties::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut subgroups);
+    // SAFETY: as above; devices below Vulkan 1.1 are not opened.
+    unsafe { instance.raw().get_physical_device_properties2(physical, &mut properties) };
+    let can_vote = subgroups.supported_stages.contains(vk::ShaderStageFlags::COMPUTE)
+        && subgroups.supported_operations.contains(vk::SubgroupFeatureFlags::BALLOT);
     let local = memory
         .memory_heaps_as_slice()
         .iter()
@@ -290,6 +298,7 @@ fn limits(
         max_compute_workgroup_count: limits.max_compute_work_group_count,
         timestamp_period: if has_timestamps { limits.timestamp_period } else { 0.0 },
         max_texel_buffer_elements: limits.max_texel_buffer_elements,
+        subgroup_size: if can_vote { subgroups.subgroup_size } else { 0 },
         heap_bytes: local.map(|heap| heap.size).max().unwrap_or(0),
     }
 }

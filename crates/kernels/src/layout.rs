@@ -58,12 +58,12 @@ constants! {
     DIGIT_BITS = 8;
     /// Pixels that a screen tile has along each side.
     DISC_TILE = 8;
-    /// Binding of the discs' build: counts, then offsets, by slot.
+    /// Binding of the discs' build: counts, then offsets, by leaf.
     DISC_OFFSETS = 1;
     /// Binding of the discs' build: screen tile and rank of each pair.
     DISC_KEYS = 2;
-    /// Binding of the discs' build: the slot of each pair.
-    DISC_SLOTS = 3;
+    /// Binding of the discs' build: the leaf of each pair, and which of its points.
+    DISC_LEAVES = 3;
     /// Binding of the discs' build: first and past-the-last pair of each screen tile.
     DISC_TILES = 4;
     /// Binding of `fit_polynomials`: every point.
@@ -124,7 +124,7 @@ constants! {
     GRID_OFFSETS = 3;
     /// Binding of the grid build: the cell of each pair.
     GRID_KEYS = 4;
-    /// Binding of the grid build: the slot of each pair.
+    /// Binding of the grid build: the leaf of each pair, and which of its points.
     GRID_SLOTS = 5;
     /// Binding of the grid build: first and past-the-last pair of each cell.
     GRID_CELLS = 6;
@@ -268,8 +268,8 @@ constants! {
     DISC_RANGES_IN = 44;
     /// Binding of `camera_trace` and `disc_trace`: front to back within a screen tile.
     DISC_KEYS_IN = 45;
-    /// Binding of `camera_trace` and `disc_trace`: points of the screen tiles.
-    DISC_SLOTS_IN = 46;
+    /// Binding of `camera_trace` and `disc_trace`: leaves of the screen tiles, and which of their points.
+    DISC_LEAVES_IN = 46;
     /// Binding of the kernels of a wave: [`LitHit`] by ray.
     WAVE_LIT_HITS = 47;
     /// Binding of `count_marked` and `list_marked`: a bit a ray.
@@ -853,7 +853,7 @@ pub struct DiscParams {
     pub ranks: DepthRanks,
     /// Points of the scene.
     pub point_count: u32,
-    /// Pairs of a screen tile and a point whose disc covers it.
+    /// Pairs of a screen tile and a leaf with points whose discs cover it.
     pub pair_count: u32,
 }
 gpu_layout!(DiscParams, 120, { camera: 0, ranks: 96, point_count: 112, pair_count: 116 });

@@ -7,9 +7,9 @@ use kernels::layout::{
 };
 use points::Grids;
 
-/// Pairs of a screen tile and a point that one tile of the picture may have. One binding holds 32
-/// million on any device; what has more is traced through the grid, which gives the same bytes.
-pub const MAX_DISC_PAIRS: u32 = 16_000_000;
+/// Pairs of a screen tile and a leaf that one tile of the picture may have. What has more is traced as other rays are,
+/// which gives the same bytes.
+pub const MAX_DISC_PAIRS: u32 = 2_000_000;
 /// Bits of a pair's key: three short rounds of the sort. What the screen tile leaves goes to the rank.
 const KEY_BITS: u32 = 21;
 /// Depths are told apart from the farthest down to this share of it.
@@ -20,7 +20,7 @@ const NEAREST_CELLS: f64 = 64.0;
 /// Points a pixel up to which discs are faster than the grid, and than the tree: each picture bins all points anew.
 /// Measured in docs/benchmarks.md.
 const POINTS_PER_PIXEL: f64 = 4.0;
-const POINTS_PER_PIXEL_TO_TREE: f64 = 1.0;
+const POINTS_PER_PIXEL_TO_TREE: f64 = 2.0;
 /// Pixels from which on they are: the dispatches of the binning cost what they cost.
 const FEWEST_PIXELS: usize = 32_768;
 

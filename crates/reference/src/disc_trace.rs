@@ -7,7 +7,17 @@ use crate::disc::depth_rank;
 use crate::disc_bin::DiscLists;
 use crate::polynomial::Polynomial;
 use crate::real::Real;
-use kernels::layout::{DISC_TILE, NONE};
+use kernels::layout::{DISC_TILE, LEAF_BITS, LEAF_POINTS, NONE};
+
+const LEAVES_AT_ONCE: usize = BATCH / LEAF_POINTS as usize;
+
+/// The slots of a leaf that an entry of the list is about.
+fn points_of(entry: u32) -> impl Iterator<Item = u32> {
+    let first = (entry & ((1 << LEAF_BITS) - 1)) * LEAF_POINTS;
+    (0..LEAF_POINTS)
+        .filter(move |place| entry >> (LEAF_BITS + place) & 1 != 0)
+        .map(move |place| first + place)
+}
 
 /// Follows the ray of one pixel of the full image until it ends.
 pub fn disc_trace<R: Real>(
@@ -21,10 +31,11 @@ pub fn disc_trace<R: Real>(
     let missed = std::mem::replace(&mut ray.cell, NONE) == NONE;
     let mut next = if missed { end } else { first };
     while next < end {
-        // Slots are read four at a time.
-        let batch = &lists.slots[next..end.min(next / 4 * 4 + BATCH)];
-        test_batch(ray, batch, polynomials, None, None);
-        next += batch.len();
+        let leaves =
+            &lists.leaves[next..end.min(next / LEAVES_AT_ONCE * LEAVES_AT_ONCE + LEAVES_AT_ONCE)];
+        let batch: Vec<u32> = leaves.iter().flat_map(|&leaf| points_of(leaf)).collect();
+        test_batch(ray, &batch, polynomials, None, None);
+        next += leaves.len();
         let rank_mask = (1 << lists.ranks.bits) - 1;
         let rank = lists.keys.get(next).map_or(0, |key| key & rank_mask);
         if rank > depth_rank(&lists.ranks, ray.hit_t) {

@@ -6,17 +6,17 @@
 use crate::passes::{DiscCount, DiscEmit, DiscRanges};
 use crate::state::RayLoop;
 use gpu::{Buffer, Device, GpuError, Recorder, Timings};
-use kernels::layout::{DepthRanks, DiscParams};
+use kernels::layout::{DepthRanks, DiscParams, LEAF_POINTS};
 use plan::{MAX_DISC_PAIRS, Plan, Window, screen_tiles};
 use points::device::{Pairs, Scan, Sort, SortSpace, Surfaces};
 use std::sync::Arc;
 
-/// The points of each screen tile, front to back.
+/// The leaves of each screen tile, front to back.
 #[derive(Debug)]
 pub struct DiscLists {
     /// First and past-the-last pair of each screen tile; empty ones have zeros.
     pub tiles: Buffer,
-    /// Screen tile and rank of each pair, ascending, and its point.
+    /// Screen tile and rank of each pair, ascending, and its leaf with those of its points that cover the tile.
     pub pairs: Pairs,
     /// How many pairs there are.
     pub pair_count: u32,
@@ -55,6 +55,7 @@ pub(crate) struct Discs {
 impl Discs {
     /// For a scene of `point_count` points.
     pub fn new(device: &Arc<Device>, point_count: u32, form: RayLoop) -> Result<Self, GpuError> {
+        let leaves = point_count.div_ceil(LEAF_POINTS);
         Ok(Self {
             device: Arc::clone(device),
             count: DiscCount::new(device, form)?,
@@ -62,8 +63,8 @@ impl Discs {
             ranges: DiscRanges::new(device)?,
             scan: Scan::new(device)?,
             sort: Sort::new(device)?,
-            offsets: Buffer::new(device, "disc offsets", (u64::from(point_count) + 1) * 4)?,
-            levels: Scan::levels(device, point_count + 1)?,
+            offsets: Buffer::new(device, "disc offsets", (u64::from(leaves) + 1) * 4)?,
+            levels: Scan::levels(device, leaves + 1)?,
             lists: None,
         })
     }
@@ -100,10 +101,11 @@ impl Discs {
         params: &DiscParams,
         timed: &mut dyn FnMut(&Timings),
     ) -> Result<u32, GpuError> {
-        let end = u64::from(params.point_count) * 4;
+        let leaves = params.point_count.div_ceil(LEAF_POINTS);
+        let end = u64::from(leaves) * 4;
         rec.fill(&self.offsets, end, 4, 0);
         self.count.record(rec, polynomials, &self.offsets, params);
-        self.scan.record(rec, &self.offsets, params.point_count + 1, &self.levels);
+        self.scan.record(rec, &self.offsets, leaves + 1, &self.levels);
         timed(&rec.submit()?);
         let mut total = [0];
         self.offsets.read(end, &mut total)?;

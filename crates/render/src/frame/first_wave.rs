@@ -2,7 +2,7 @@
 
 use super::{Classes, FrameStats, Renderer, Traced, record_no_marks};
 use crate::RenderError;
-use crate::passes::{CameraRaysIo, CameraTraceIo, CameraWay};
+use crate::passes::{CameraRaysIo, CameraTrace, CameraTraceIo};
 use crate::state::RayLoop;
 use gpu::Timings;
 use kernels::layout::WaveParams;
@@ -35,10 +35,11 @@ impl Renderer {
             return Ok(None);
         }
         let way = match (self.discs.lists(), &self.surfaces.tree) {
-            (Some(lists), _) if plan.by_discs(tile) => CameraWay::Discs(lists),
-            (_, Some(tree)) if plan.camera_by_tree() => CameraWay::Tree(tree),
-            _ => return Ok(None),
+            (Some(lists), _) if plan.by_discs(tile) => self.passes.camera_trace.discs(lists),
+            (_, Some(tree)) if plan.camera_by_tree() => Some(self.passes.camera_trace.tree(tree)),
+            _ => None,
         };
+        let Some(way) = way else { return Ok(None) };
         let io = CameraTraceIo {
             way,
             surfaces: &self.surfaces,
@@ -55,7 +56,7 @@ impl Renderer {
         let traced = plan.camera_trace_of(tile, &self.surfaces.grids, work);
         self.recorder.fill(&self.live, 0, 4, 0);
         record_no_marks(&mut self.recorder, &self.wave, plan, params);
-        self.passes.camera_trace.record(&mut self.recorder, io, &traced);
+        CameraTrace::record(&mut self.recorder, io, &traced);
         self.record_lists(plan, params);
         let timings = self.recorder.submit()?;
         stats.add_kernels(&timings.passes);

@@ -6,7 +6,7 @@ use crate::state::{RayLoop, StoredRays, Touch};
 use crate::wave::WaveBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
-    CameraTraceParams, DISC_KEYS_IN, DISC_RANGES_IN, DISC_SLOTS_IN, SHADE_FILM, SHADE_IMAGES,
+    CameraTraceParams, DISC_KEYS_IN, DISC_LEAVES_IN, DISC_RANGES_IN, SHADE_FILM, SHADE_IMAGES,
     SHADE_OBJECTS, SHADE_TEXELS, TRACE_CELLS, TRACE_HITS, TRACE_INFO, TRACE_LIVE, TRACE_NODES,
     TRACE_POLYNOMIALS, TRACE_SLOTS, WAVE_LIT, WAVE_LIT_HITS, WAVE_NEXT_MARKS, WAVE_SCATTERING,
 };
@@ -14,11 +14,14 @@ use kernels::spirv;
 use points::device::{Surfaces, Tree};
 use std::sync::Arc;
 
+/// Lanes that ask together (`glsl/shared/packet.glsl`).
+const PACKET: u32 = 8;
+
 /// How its rays find their hits.
 #[derive(Clone, Copy)]
 pub(crate) enum CameraWay<'a> {
-    Discs(&'a DiscLists),
-    Tree(&'a Tree),
+    Discs(&'a Kernel, &'a DiscLists),
+    Tree(&'a Kernel, &'a Tree),
 }
 
 /// What the pass works on.
@@ -41,7 +44,8 @@ pub(crate) struct CameraTraceIo<'a> {
 
 /// The first wave from the eye to the film, where nothing but surfaces meets it (\[T\] §4).
 pub(crate) struct CameraTrace {
-    by_discs: Kernel,
+    /// Where the device's subgroups are made of packets of eight that can vote.
+    by_discs: Option<Kernel>,
     by_tree: Kernel,
 }
 
@@ -71,24 +75,37 @@ impl CameraTrace {
             let params = size_of::<CameraTraceParams>();
             Kernel::specialized(device, Self::NAME, module, &bindings, params, Some(scene))
         };
+        let subgroup = device.limits().subgroup_size;
+        let has_packets = subgroup != 0 && subgroup.is_multiple_of(PACKET);
+        let by_discs = || kernel(&spirv::camera_trace(), &disc_lists(form));
         Ok(Self {
-            by_discs: kernel(&spirv::camera_trace(), &disc_lists(form))?,
+            by_discs: has_packets.then(by_discs).transpose()?,
             by_tree: kernel(&spirv::camera_trace_tree(), &[(TRACE_NODES, form.read(Texel::Four))])?,
         })
     }
 
+    /// By discs, where the device can.
+    pub fn discs<'a>(&'a self, lists: &'a DiscLists) -> Option<CameraWay<'a>> {
+        self.by_discs.as_ref().map(|kernel| CameraWay::Discs(kernel, lists))
+    }
+
+    /// Through the tree.
+    pub fn tree<'a>(&'a self, tree: &'a Tree) -> CameraWay<'a> {
+        CameraWay::Tree(&self.by_tree, tree)
+    }
+
     /// Records the first wave of a tile.
-    pub fn record(&self, rec: &mut Recorder, io: CameraTraceIo<'_>, params: &CameraTraceParams) {
+    pub fn record(rec: &mut Recorder, io: CameraTraceIo<'_>, params: &CameraTraceParams) {
         let mut params = *params;
         let pass = match io.way {
-            CameraWay::Discs(lists) => rec
-                .pass(Self::NAME, &self.by_discs)
+            CameraWay::Discs(kernel, lists) => rec
+                .pass(Self::NAME, kernel)
                 .buffer(DISC_RANGES_IN, &lists.tiles)
                 .buffer(DISC_KEYS_IN, &lists.pairs.keys)
-                .buffer(DISC_SLOTS_IN, &lists.pairs.slots),
-            CameraWay::Tree(tree) => {
+                .buffer(DISC_LEAVES_IN, &lists.pairs.slots),
+            CameraWay::Tree(kernel, tree) => {
                 params.tree = tree.info;
-                rec.pass(Self::NAME, &self.by_tree).buffer(TRACE_NODES, &tree.nodes)
+                rec.pass(Self::NAME, kernel).buffer(TRACE_NODES, &tree.nodes)
             }
         };
         io.state

@@ -2,12 +2,12 @@
 
 use crate::state::RayLoop;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
-use kernels::layout::{DISC_OFFSETS, DiscParams, TRACE_POLYNOMIALS};
+use kernels::layout::{DISC_OFFSETS, DiscParams, LEAF_POINTS, TRACE_POLYNOMIALS};
 use kernels::spirv;
 use points::device::line;
 use std::sync::Arc;
 
-/// How many screen tiles the disc of each point covers (\[T\] §4).
+/// How many screen tiles the discs of each leaf cover (\[T\] §4).
 pub(crate) struct DiscCount {
     kernel: Kernel,
 }
@@ -24,7 +24,7 @@ impl DiscCount {
         Ok(Self { kernel })
     }
 
-    /// Records the count of each point, by slot.
+    /// Records the count of each leaf.
     pub fn record(
         &self,
         rec: &mut Recorder,
@@ -36,6 +36,6 @@ impl DiscCount {
             .buffer(TRACE_POLYNOMIALS, polynomials)
             .buffer(DISC_OFFSETS, counts)
             .push(params)
-            .dispatch(line(params.point_count));
+            .dispatch(line(params.point_count.div_ceil(LEAF_POINTS)));
     }
 }

@@ -2,12 +2,14 @@
 
 use crate::state::RayLoop;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
-use kernels::layout::{DISC_KEYS, DISC_OFFSETS, DISC_SLOTS, DiscParams, TRACE_POLYNOMIALS};
+use kernels::layout::{
+    DISC_KEYS, DISC_LEAVES, DISC_OFFSETS, DiscParams, LEAF_POINTS, TRACE_POLYNOMIALS,
+};
 use kernels::spirv;
 use points::device::{Pairs, line};
 use std::sync::Arc;
 
-/// A pair for each screen tile that each point's disc covers.
+/// A pair for each screen tile that the discs of each leaf's points cover.
 pub(crate) struct DiscEmit {
     kernel: Kernel,
 }
@@ -20,7 +22,7 @@ impl DiscEmit {
             (TRACE_POLYNOMIALS, form.read(Texel::Four)),
             (DISC_OFFSETS, form.read(Texel::One)),
             (DISC_KEYS, Binding::StorageBuffer),
-            (DISC_SLOTS, Binding::StorageBuffer),
+            (DISC_LEAVES, Binding::StorageBuffer),
         ];
         let module = form.module(spirv::disc_emit, spirv::disc_emit_queue);
         let params = size_of::<DiscParams>();
@@ -28,7 +30,7 @@ impl DiscEmit {
         Ok(Self { kernel })
     }
 
-    /// Records the pairs of all points; `offsets` are their counts, scanned.
+    /// Records the pairs of all leaves; `offsets` are their counts, scanned.
     pub fn record(
         &self,
         rec: &mut Recorder,
@@ -41,8 +43,8 @@ impl DiscEmit {
             .buffer(TRACE_POLYNOMIALS, polynomials)
             .buffer(DISC_OFFSETS, offsets)
             .buffer(DISC_KEYS, &pairs.keys)
-            .buffer(DISC_SLOTS, &pairs.slots)
+            .buffer(DISC_LEAVES, &pairs.slots)
             .push(params)
-            .dispatch(line(params.point_count));
+            .dispatch(line(params.point_count.div_ceil(LEAF_POINTS)));
     }
 }

@@ -5,7 +5,7 @@ use crate::discs::DiscLists;
 use crate::state::{RayLoop, RayState, Touch};
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
-    DISC_KEYS_IN, DISC_RANGES_IN, DISC_SLOTS_IN, DiscTraceParams, TRACE_LIVE, TRACE_POLYNOMIALS,
+    DISC_KEYS_IN, DISC_LEAVES_IN, DISC_RANGES_IN, DiscTraceParams, TRACE_LIVE, TRACE_POLYNOMIALS,
     TraceParams,
 };
 use kernels::spirv;
@@ -55,7 +55,7 @@ impl DiscTrace {
             .bind_update(pass)
             .buffer(DISC_RANGES_IN, &io.lists.tiles)
             .buffer(DISC_KEYS_IN, &io.lists.pairs.keys)
-            .buffer(DISC_SLOTS_IN, &io.lists.pairs.slots)
+            .buffer(DISC_LEAVES_IN, &io.lists.pairs.slots)
             .buffer(TRACE_POLYNOMIALS, &io.surfaces.polynomials)
             .buffer(TRACE_LIVE, io.live)
             .push(&params)

@@ -24,7 +24,7 @@ mod tree_trace;
 pub(crate) use accumulate::Accumulate;
 pub(crate) use albedo::AlbedoIo;
 pub(crate) use camera_rays::{CameraRays, CameraRaysIo};
-pub(crate) use camera_trace::{CameraTrace, CameraTraceIo, CameraWay};
+pub(crate) use camera_trace::{CameraTrace, CameraTraceIo};
 pub(crate) use classify::{Classify, ClassifyIo};
 pub(crate) use disc_count::DiscCount;
 pub(crate) use disc_emit::DiscEmit;
@@ -45,7 +45,7 @@ pub(crate) use tree_trace::TreeTrace;
 use crate::state::RayLoop;
 use gpu::{Binding, Texel};
 use kernels::layout::{
-    DISC_KEYS_IN, DISC_RANGES_IN, DISC_SLOTS_IN, TILE_GROUP, TRACE_CELLS, TRACE_POLYNOMIALS,
+    DISC_KEYS_IN, DISC_LEAVES_IN, DISC_RANGES_IN, TILE_GROUP, TRACE_CELLS, TRACE_POLYNOMIALS,
     TRACE_SLOTS, WAVE_LIT_HITS, WAVE_LIT_RAYS, WAVE_PATHS,
 };
 use points::device::line;
@@ -76,7 +76,7 @@ fn disc_lists(form: RayLoop) -> [(u32, Binding); 3] {
     [
         (DISC_RANGES_IN, form.read(Texel::Two)),
         (DISC_KEYS_IN, form.read(Texel::One)),
-        (DISC_SLOTS_IN, form.read(Texel::Four)),
+        (DISC_LEAVES_IN, form.read(Texel::Four)),
     ]
 }
 
