@@ -1,7 +1,7 @@
 // grid_count: how many cells of a slab of the grid each point's trust ball meets.
 //
-// reads   grid, polynomials
-//         order            slots in the order of (object, index)
+// reads   grid
+//         balls            in the order of (object, index)
 // writes  offsets          one count a point, in that order; a scan turns them into offsets
 //         large_offsets    the same of large balls alone, where params.any_large; theirs are cells around the
 //                          ball, before the exact test
@@ -16,8 +16,7 @@
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = GRID_INFO) readonly buffer Info { GridInfo grid; };
-WORDS(GRID_POLYNOMIALS, polynomials); // four each
-layout(std430, binding = GRID_ORDER) readonly buffer Order { uint order[]; };
+WORDS(GRID_BALLS, balls);
 layout(std430, binding = GRID_OFFSETS) writeonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = GRID_LARGE) writeonly buffer LargeOffsets { uint large_offsets[]; };
 layout(push_constant) uniform Push { GridParams params; };
@@ -25,7 +24,7 @@ layout(push_constant) uniform Push { GridParams params; };
 void main() {
     uint ordinal = list_index();
     if (ordinal >= params.point_count) return;
-    vec4 ball = uintBitsToFloat(words_of(polynomials, 4u * order[ordinal]));
+    vec4 ball = uintBitsToFloat(words_of(balls, ordinal));
     float radius = ball.w * params.ball_scale;
     CellBox box = cells_of_slab(grid, params, ball);
     bool is_large = box.count > SMALL_BALL;

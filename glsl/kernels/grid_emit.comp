@@ -1,6 +1,6 @@
 // grid_emit: one (cell, slot) pair for each cell of a slab that a point's trust ball meets; not for large balls.
 //
-// reads   grid, polynomials, order
+// reads   grid, balls, order
 //         offsets          first pair of each point, in the order of (object, index)
 // writes  keys             the cell's place in the slab
 //         slots            the point
@@ -17,7 +17,7 @@
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = GRID_INFO) readonly buffer Info { GridInfo grid; };
-WORDS(GRID_POLYNOMIALS, polynomials); // four each
+WORDS(GRID_BALLS, balls);
 layout(std430, binding = GRID_ORDER) readonly buffer Order { uint order[]; };
 layout(std430, binding = GRID_OFFSETS) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = GRID_KEYS) writeonly buffer Keys { uint keys[]; };
@@ -28,7 +28,7 @@ void main() {
     uint ordinal = list_index();
     if (ordinal >= params.point_count) return;
     uint slot = order[ordinal];
-    vec4 ball = uintBitsToFloat(words_of(polynomials, 4u * slot));
+    vec4 ball = uintBitsToFloat(words_of(balls, ordinal));
     float radius = ball.w * params.ball_scale;
     CellBox box = cells_of_slab(grid, params, ball);
     uint end = box.count > SMALL_BALL ? 0u : box.count;

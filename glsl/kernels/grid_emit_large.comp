@@ -1,6 +1,6 @@
 // grid_emit_large: the pairs of large balls.
 //
-// reads   grid, polynomials, order
+// reads   grid, balls, order
 //         offsets          first pair of each point, in the order of (object, index)
 //         large_offsets    the same, were there only large balls
 // writes  keys             the cell's place in the slab, or the number of its cells where the ball does not
@@ -17,7 +17,7 @@
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = GRID_INFO) readonly buffer Info { GridInfo grid; };
-WORDS(GRID_POLYNOMIALS, polynomials); // four each
+WORDS(GRID_BALLS, balls);
 layout(std430, binding = GRID_ORDER) readonly buffer Order { uint order[]; };
 layout(std430, binding = GRID_OFFSETS) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = GRID_KEYS) writeonly buffer Keys { uint keys[]; };
@@ -37,7 +37,7 @@ void main() {
         high = before ? high : middle;
     }
     uint slot = order[low];
-    vec4 ball = uintBitsToFloat(words_of(polynomials, 4u * slot));
+    vec4 ball = uintBitsToFloat(words_of(balls, low));
     CellBox box = cells_of_slab(grid, params, ball);
     uint nth = i - large_offsets[low];
     uvec3 cell = cell_of_box(box, nth);

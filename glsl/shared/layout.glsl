@@ -63,6 +63,7 @@
 #define GRID_SLOTS 5
 #define GRID_CELLS 6
 #define GRID_LARGE 7
+#define GRID_BALLS 8 // centre and radius, in the order of (object, index)
 #define SKIP_MARKS_IN 8
 #define SKIP_MARKS_OUT 9
 #define SKIP_OCCUPIED 10
@@ -363,7 +364,7 @@ struct GridParams {      // 28 bytes
     float ball_scale;    //  8  radius listed over trust radius; 0: each point in its own cell alone
     uint first_layer;    // 12
     uint end_layer;      // 16  past the last
-    uint first_pair;     // 20  pairs of the slabs and grids before
+    uint first_pair;     // 20  pairs of the slabs and grids before; of order_balls: points of the parts before
     uint any_large;      // 24  1: balls may be large
 };
 

@@ -130,6 +130,8 @@ constants! {
     GRID_CELLS = 6;
     /// Binding of the grid build: counts, then offsets, of large balls alone, by ordinal.
     GRID_LARGE = 7;
+    /// Binding of the grid build: trust balls in the order of (object, index).
+    GRID_BALLS = 8;
     /// Binding of `grow_marks`: cells that are marked, 32 of a row a word.
     SKIP_MARKS_IN = 8;
     /// Binding of `mark_occupied` and `grow_marks`: the cells that they mark.
@@ -676,7 +678,7 @@ pub struct GridParams {
     pub first_layer: u32,
     /// Past the last.
     pub end_layer: u32,
-    /// Pairs of the slabs before.
+    /// Pairs of the slabs before; of `order_balls`, points of the parts before.
     pub first_pair: u32,
     /// 1 where balls may be large.
     pub any_large: u32,

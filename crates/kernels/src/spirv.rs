@@ -140,6 +140,10 @@ modules! {
     mark_occupied,
     /// Boxes around boxes.
     node_boxes,
+    /// Trust balls in the order that the grid lists them in.
+    order_balls,
+    /// `order_balls`, reading polynomials through a uniform texel buffer.
+    order_balls_texels,
     /// What of a light's reaches the points of a volume.
     point_lights,
     /// `point_lights` for rays in a queue.
@@ -228,6 +232,7 @@ pub const VARIANTS: &[(&str, &str, &[&str])] = &[
     ("march_queue", "march", &["QUEUE"]),
     ("march_shadows", "march", &["SHADOWS"]),
     ("march_shadows_queue", "march", &["SHADOWS", "QUEUE"]),
+    ("order_balls_texels", "order_balls", &["POINTS_AS_TEXELS"]),
     ("point_lights_queue", "point_lights", &["QUEUE"]),
     ("point_rays_queue", "point_rays", &["QUEUE"]),
     ("refine_queue", "refine", &["QUEUE"]),

@@ -56,7 +56,10 @@ const GAP_BINS: usize = 256;
 const FIRST_CELL: u32 = 64;
 
 /// Trust balls: centre and radius.
-type Ball = ([f64; 3], f64);
+type Ball = ([f32; 3], f32);
+/// Balls from which on cells and pairs of a part of them say how fine a grid may be, before those of all do.
+const MANY: usize = 1 << 20;
+const PART: usize = 16;
 
 /// The grids of a scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,7 +115,7 @@ impl Grids {
         if bounds == none {
             return Self::single(EMPTY);
         }
-        let corners = bounds.map(|corner| (corner.map(f64::from), 0.0));
+        let corners = bounds.map(|corner| (corner, 0.0));
         let alone = Share { of_all: 1.0, budget: BYTES_PER_POINT };
         Self::single(plan_grid(&corners, 0.0, COARSE, alone))
     }
@@ -192,12 +195,12 @@ pub fn plan_grids(
         .zip(outcomes)
         .with_min_len(1 << 14)
         .filter(|(_, outcome)| carries(outcome))
-        .map(|(point, outcome)| (point.position.map(f64::from), f64::from(outcome.trust)))
+        .map(|(point, outcome)| (point.position, outcome.trust))
         .collect();
     if balls.is_empty() {
         return Grids::single(EMPTY);
     }
-    let mut radii: Vec<f64> = balls.iter().map(|ball| ball.1).collect();
+    let mut radii: Vec<f32> = balls.iter().map(|ball| ball.1).collect();
     if resolution > 0 {
         return Grids::single(plan_grid(&balls, 0.0, resolution, Share { of_all: 1.0, budget }));
     }
@@ -242,16 +245,16 @@ fn split(all: Group, budget: f64) -> Vec<(GridInfo, Vec<u32>)> {
     let count = all.balls.len() as f64;
     let (mut done, mut groups) = (Vec::new(), VecDeque::from([all]));
     while let Some(group) = groups.pop_front() {
-        let mut radii: Vec<f64> = group.balls.iter().map(|ball| ball.1).collect();
+        let mut radii: Vec<f32> = group.balls.iter().map(|ball| ball.1).collect();
         let share = Share { of_all: radii.len() as f64 / count, budget };
         let (grid, is_fine) = plan_fine(&group.balls, &mut radii, share);
         let may_part = done.len() + groups.len() + 2 <= MOST_LEVELS as usize;
         if !may_part || is_fine {
             done.push((grid, group.slots));
         } else if let Some(radius) = radius_between(&mut radii) {
-            groups.extend(group.parted(&|ball| ball.1 < radius));
+            groups.extend(group.parted(&|ball| f64::from(ball.1) < radius));
         } else if let Some((axis, place)) = widest_gap(&group.balls) {
-            groups.extend(group.parted(&|ball| ball.0[axis] < place));
+            groups.extend(group.parted(&|ball| f64::from(ball.0[axis]) < place));
         } else {
             done.push((grid, group.slots));
         }
@@ -261,7 +264,7 @@ fn split(all: Group, budget: f64) -> Vec<(GridInfo, Vec<u32>)> {
 
 /// One grid over these balls, which are so large a share of all, and whether it is fine enough: for most of them, or
 /// where small ones crowd, for those.
-fn plan_fine(balls: &[Ball], radii: &mut [f64], share: Share) -> (GridInfo, bool) {
+fn plan_fine(balls: &[Ball], radii: &mut [f32], share: Share) -> (GridInfo, bool) {
     let least = small(radii);
     let grid = plan_grid(balls, median(radii), 0, share);
     if !is_too_coarse(&grid, balls, least) {
@@ -272,16 +275,16 @@ fn plan_fine(balls: &[Ball], radii: &mut [f64], share: Share) -> (GridInfo, bool
     (if is_fine { finer } else { grid }, is_fine)
 }
 
-fn nth(radii: &mut [f64], n: usize) -> f64 {
-    *radii.select_nth_unstable_by(n, f64::total_cmp).1
+fn nth(radii: &mut [f32], n: usize) -> f64 {
+    f64::from(*radii.select_nth_unstable_by(n, f32::total_cmp).1)
 }
 
-fn median(radii: &mut [f64]) -> f64 {
+fn median(radii: &mut [f32]) -> f64 {
     nth(radii, radii.len() / 2)
 }
 
 /// The radius of small balls.
-fn small(radii: &mut [f64]) -> f64 {
+fn small(radii: &mut [f32]) -> f64 {
     nth(radii, (radii.len() / 100).min(SMALL_BALLS))
 }
 
@@ -291,9 +294,10 @@ fn is_too_coarse(grid: &GridInfo, balls: &[Ball], radius: f64) -> bool {
         return false;
     }
     let [nx, ny, _] = grid.resolution.map(|n| n as usize);
-    let cell_of = |center: &[f64; 3]| {
+    let cell_of = |center: &[f32; 3]| {
         let [x, y, z] = [0, 1, 2].map(|axis| {
-            let at = (center[axis] - f64::from(grid.origin[axis])) / f64::from(grid.edge);
+            let at =
+                (f64::from(center[axis]) - f64::from(grid.origin[axis])) / f64::from(grid.edge);
             (at as usize).min(grid.resolution[axis] as usize - 1)
         });
         x + nx * (y + ny * z)
@@ -302,7 +306,7 @@ fn is_too_coarse(grid: &GridInfo, balls: &[Ball], radius: f64) -> bool {
     for (center, _) in balls {
         counts[cell_of(center)] += 1;
     }
-    let mut crowds: Vec<u32> = (balls.iter().filter(|ball| ball.1 <= radius))
+    let mut crowds: Vec<u32> = (balls.iter().filter(|ball| f64::from(ball.1) <= radius))
         .map(|(center, _)| counts[cell_of(center)])
         .collect();
     let half = crowds.len() / 2;
@@ -311,7 +315,7 @@ fn is_too_coarse(grid: &GridInfo, balls: &[Ball], radius: f64) -> bool {
 
 /// The radius that parts small balls from others, where there are others: where the fewest are, in the middle of
 /// those places, by the logarithm.
-fn radius_between(radii: &mut [f64]) -> Option<f64> {
+fn radius_between(radii: &mut [f32]) -> Option<f64> {
     const BINS: usize = 32;
     let least = small(radii);
     let large = nth(radii, radii.len() - 1 - (radii.len() / 100).min(SMALL_BALLS));
@@ -321,7 +325,7 @@ fn radius_between(radii: &mut [f64]) -> Option<f64> {
     let [from, to] = [VALLEY[0] * least, (VALLEY[1] * least).min(large)].map(f64::ln);
     let mut counts = [0u32; BINS];
     for radius in radii.iter() {
-        let at = (radius.ln() - from) / (to - from) * BINS as f64;
+        let at = (f64::from(*radius).ln() - from) / (to - from) * BINS as f64;
         if at >= 0.0 && at < BINS as f64 {
             counts[at as usize] += 1;
         }
@@ -342,7 +346,8 @@ fn widest_gap(balls: &[Ball]) -> Option<(usize, f64)> {
         let mut reached = [false; GAP_BINS];
         for (center, radius) in balls {
             let place = |x: f64| (((x - low[axis]) / bin) as usize).min(GAP_BINS - 1);
-            reached[place(center[axis] - radius)..=place(center[axis] + radius)].fill(true);
+            let (center, radius) = (f64::from(center[axis]), f64::from(*radius));
+            reached[place(center - radius)..=place(center + radius)].fill(true);
         }
         let mut first = 0;
         for (at, reached) in reached.into_iter().enumerate() {
@@ -359,14 +364,22 @@ fn widest_gap(balls: &[Ball]) -> Option<(usize, f64)> {
 
 /// Lowest and highest corner of the box around all balls.
 fn bounds_of(balls: &[Ball]) -> [[f64; 3]; 2] {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for (center, radius) in balls {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(center[axis] - radius * 1.001);
-            high[axis] = high[axis].max(center[axis] + radius * 1.001);
+    let of_some = |balls: &[Ball]| {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for (center, radius) in balls {
+            let reach = f64::from(*radius) * 1.001;
+            for axis in 0..3 {
+                low[axis] = low[axis].min(f64::from(center[axis]) - reach);
+                high[axis] = high[axis].max(f64::from(center[axis]) + reach);
+            }
         }
-    }
-    [low, high]
+        [low, high]
+    };
+    let joined = |a: [[f64; 3]; 2], b: [[f64; 3]; 2]| {
+        let of = |side: usize, f: fn(f64, f64) -> f64| [0, 1, 2].map(|i| f(a[side][i], b[side][i]));
+        [of(0, f64::min), of(1, f64::max)]
+    };
+    balls.par_chunks(1 << 14).map(of_some).reduce(|| of_some(&[]), joined)
 }
 
 /// One grid over these balls, for this radius, as far as so large a share of all may have cells and pairs.
@@ -374,12 +387,12 @@ fn plan_grid(balls: &[Ball], radius: f64, resolution: u32, share: Share) -> Grid
     let [low, high] = bounds_of(balls);
     let extent = [0, 1, 2].map(|axis| high[axis] - low[axis]);
     let longest = extent[0].max(extent[1]).max(extent[2]);
-    let mut edge = match resolution {
+    let edge = match resolution {
         0 => EDGE_PER_TRUST * radius,
         cells => longest * 1.000_02 / f64::from(cells),
     };
     // A coordinate's rounding must stay small beside a cell.
-    edge = edge.max(longest * 1e-5);
+    let edge = edge.max(longest * 1e-5);
     let allowed = |per_point: f64, most: f64| {
         (per_point * balls.len() as f64).min(share.of_all * most).max(ALWAYS_ALLOWED)
     };
@@ -387,21 +400,35 @@ fn plan_grid(balls: &[Ball], radius: f64, resolution: u32, share: Share) -> Grid
         0 => (share.budget * balls.len() as f64).max(8.0 * ALWAYS_ALLOWED),
         _ => f64::INFINITY,
     };
-    let is_too_fine = |edge: f64| {
+    let is_too_fine = |edge: f64, pairs: &dyn Fn(f64) -> f64| {
         let cells = cell_count(extent, edge);
         if cells > allowed(CELLS_PER_POINT, CELLS_ALLOWED) || 8.0 * cells > most_bytes {
             return true;
         }
-        let pairs = pair_count(balls, low, edge);
+        let pairs = pairs(edge);
         let bytes = 8.0 * cells + 4.0 * LISTED_PAIRS * pairs;
         pairs > allowed(PAIRS_PER_POINT, PAIRS_ALLOWED) || bytes > most_bytes
     };
-    while is_too_fine(edge) {
-        edge *= 1.1;
-        if edge > 2.0 * longest {
-            break;
+    let grown = |steps: u32| (0..steps).fold(edge, |edge, _| edge * 1.1);
+    let settles = |steps: u32, pairs: &dyn Fn(f64) -> f64| {
+        let edge = grown(steps);
+        !is_too_fine(edge, pairs) || (steps > 0 && edge > 2.0 * longest)
+    };
+    let first_from = |steps: u32, pairs: &dyn Fn(f64) -> f64| {
+        (steps..).find(|&steps| settles(steps, pairs)).unwrap_or(steps)
+    };
+    let all_pairs = |edge: f64| pair_count(balls, low, edge);
+    let mut steps = 0;
+    if balls.len() >= MANY {
+        // A part of them says where to look.
+        let part: Vec<Ball> = balls.iter().step_by(PART).copied().collect();
+        let scale = balls.len() as f64 / part.len() as f64;
+        steps = first_from(0, &|edge| scale * pair_count(&part, low, edge));
+        while steps > 0 && settles(steps - 1, &all_pairs) {
+            steps -= 1;
         }
     }
+    let edge = grown(first_from(steps, &all_pairs));
     GridInfo {
         origin: low.map(|x| x as f32),
         edge: edge as f32,
@@ -423,8 +450,9 @@ fn pair_count(balls: &[Ball], low: [f64; 3], edge: f64) -> f64 {
     let cells = |(center, radius): &Ball| -> f64 {
         (0..3)
             .map(|axis| {
-                let from = ((center[axis] - radius - low[axis]) / edge).floor();
-                ((center[axis] + radius - low[axis]) / edge).floor() - from + 1.0
+                let (center, radius) = (f64::from(center[axis]), f64::from(*radius));
+                let from = ((center - radius - low[axis]) / edge).floor();
+                ((center + radius - low[axis]) / edge).floor() - from + 1.0
             })
             .product()
     };
@@ -483,6 +511,29 @@ mod tests {
         balls.push(([1e6, 1e6, 1e6], 1e6));
         let grid = plan(&balls, 100_000);
         assert!(f64::from(grid.cell_count()) <= CELLS_PER_POINT * 10_001.0, "{grid:?}");
+    }
+
+    /// Of very many balls a part says how fine the grid may be, and all of them have the last word: also where the part has
+    /// one of the few that meet most of the pairs.
+    #[test]
+    fn very_many_balls_have_the_finest_grid_within_their_bounds() {
+        let side = 1100;
+        let mut balls = square([0.0; 3], 1.0, side);
+        for large in [0, PART, 37 * PART + 1] {
+            balls[large].1 = 0.2;
+        }
+        assert!(balls.len() >= MANY);
+        let share = Share { of_all: 1.0, budget: BYTES_BESIDE_TREE };
+        let grid = plan_grid(&balls, 1.0 / f64::from(side), 0, share);
+        let [low, high] = bounds_of(&balls);
+        let extent = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+        let bytes = |edge: f64| {
+            let pairs = pair_count(&balls, low, edge);
+            (8.0 * cell_count(extent, edge) + 4.0 * LISTED_PAIRS * pairs) / balls.len() as f64
+        };
+        let edge = f64::from(grid.edge);
+        assert!(bytes(edge) <= BYTES_BESIDE_TREE, "{}", bytes(edge));
+        assert!(bytes(edge / 1.1) > BYTES_BESIDE_TREE, "{}", bytes(edge / 1.1));
     }
 
     /// `count` squared balls on a square of this width, as large as they lie apart.

@@ -135,15 +135,16 @@ impl<'a> NeighborSearch<'a> {
     }
 
     fn distance_to_box(&self, node: u32, p: [f32; 3]) -> f32 {
-        let Node { low, high, .. } = &self.nodes[node as usize];
-        let [x, y, z] =
-            [0, 1, 2].map(|axis| (low[axis] - p[axis]).max(p[axis] - high[axis]).max(0.0));
-        (x * x + y * y) + z * z
+        let Node { low, high, .. } = self.nodes[node as usize];
+        distance_to_box(low, high, p)
     }
 }
 
-/// The same lists for a few points of an object, by a look at all the others: without a tree, whose making
-/// takes as long as some hundred such looks.
+/// Points of a block, by which few points look for their neighbours.
+const BLOCK: usize = 1024;
+
+/// The same lists for a few points of an object, by a look at all the others, block after block: without a tree, whose
+/// making takes as long as many hundred such looks where points that follow each other lie together.
 #[must_use]
 pub fn nearest_of_few(
     points: &[Point],
@@ -152,18 +153,47 @@ pub fn nearest_of_few(
     k: usize,
 ) -> Vec<u32> {
     let mut lists = vec![NONE; few.len() * k];
+    let boxes: Vec<_> = points.par_chunks(BLOCK).map(box_around).collect();
     lists.par_chunks_mut(k).zip(few).for_each(|(list, at)| {
         let center = points[at].position;
+        let mut blocks: Vec<(f32, usize)> =
+            boxes.iter().map(|[low, high]| distance_to_box(*low, *high, center)).zip(0..).collect();
+        blocks.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         let mut found: Vec<Found> = Vec::with_capacity(k + 1);
-        for (place, point) in (0..).zip(points).filter(|(place, _)| *place as usize != at) {
-            let candidate = (squared_distance(center, point.position), point.index, place);
-            insert(&mut found, k, candidate);
+        for (distance, block) in blocks {
+            if found.len() == k && found.last().is_some_and(|worst| distance > worst.0) {
+                break;
+            }
+            let first = block * BLOCK;
+            let members = &points[first..points.len().min(first + BLOCK)];
+            for (place, point) in (first..).zip(members).filter(|(place, _)| *place != at) {
+                let square = squared_distance(center, point.position);
+                insert(&mut found, k, (square, point.index, place as u32));
+            }
         }
         for (entry, &(_, _, place)) in list.iter_mut().zip(&found) {
             *entry = first_slot + place;
         }
     });
     lists
+}
+
+/// Lowest and highest corner of the box around some points.
+fn box_around(points: &[Point]) -> [[f32; 3]; 2] {
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for point in points {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(point.position[axis]);
+            high[axis] = high[axis].max(point.position[axis]);
+        }
+    }
+    [low, high]
+}
+
+/// d² of what is nearest in a box.
+fn distance_to_box(low: [f32; 3], high: [f32; 3], p: [f32; 3]) -> f32 {
+    let [x, y, z] = [0, 1, 2].map(|axis| (low[axis] - p[axis]).max(p[axis] - high[axis]).max(0.0));
+    (x * x + y * y) + z * z
 }
 
 /// d² as every neighbour search of the project computes it.
@@ -278,6 +308,23 @@ mod tests {
         );
         for few in 1..6 {
             check(&points((0..few).map(|i| [i as f32, 1.0, 0.0])), 16);
+        }
+    }
+
+    /// Blocks that are far, near, and the last, which is not whole; many at the same distance.
+    #[test]
+    fn few_points_find_the_same_block_after_block() {
+        let mut seed = 3;
+        let line = points((0..5_000).map(|i| [i as f32, random(&mut seed), random(&mut seed)]));
+        let anywhere = points((0..5_000).map(|_| [0; 3].map(|_| random(&mut seed))));
+        let lattice = points((0..5_000).map(|i| [(i % 70) as f32, (i / 70) as f32, 0.0]));
+        for set in [line, anywhere, lattice] {
+            let tree = NeighborSearch::new(&set, 7);
+            for first in [0, 1_020, 2_500, 4_992] {
+                let range = first..first + 8;
+                let few = nearest_of_few(&set, 7, range.clone(), 16);
+                assert_eq!(few, tree.nearest(range, 16), "from {first}");
+            }
         }
     }
 

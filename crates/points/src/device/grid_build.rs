@@ -11,11 +11,12 @@ use super::{
     sort::{Pairs, Sort, SortSpace},
 };
 use crate::BALL_MARGIN;
+use bytemuck::Zeroable;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Texel};
 use kernels::layout::{
-    GRID_CELLS, GRID_INFO, GRID_KEYS, GRID_LARGE, GRID_OFFSETS, GRID_ORDER, GRID_POLYNOMIALS,
-    GRID_SLOTS, GridLevel, GridParams, ListedPoint, OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT,
-    OFFSETS_POINTS, OFFSETS_POLYNOMIALS, OFFSETS_SLOTS,
+    GRID_BALLS, GRID_CELLS, GRID_INFO, GRID_KEYS, GRID_LARGE, GRID_OFFSETS, GRID_ORDER,
+    GRID_POLYNOMIALS, GRID_SLOTS, GridLevel, GridParams, ListedPoint, OFFSETS_INFO, OFFSETS_KEYS,
+    OFFSETS_OUT, OFFSETS_POINTS, OFFSETS_POLYNOMIALS, OFFSETS_SLOTS,
 };
 use kernels::spirv;
 use std::borrow::Cow;
@@ -33,12 +34,30 @@ pub(crate) struct GridBuildIo<'a> {
     pub any_large: bool,
 }
 
-/// Pairs of one slab, at most, unless it is a single layer: 170 MB to sort them in.
-const SLAB_PAIRS: u32 = 7_000_000;
+/// Pairs of one slab, unless it is a single layer: so many in any case; so many a point where the device has room, since
+/// each slab looks at all points; and no more than one binding holds.
+const SLAB_PAIRS: u64 = 7_000_000;
+const SLAB_PAIRS_PER_POINT: u64 = 3;
+const MOST_SLAB_PAIRS: u64 = 32_000_000;
+/// What a pair takes while it is sorted, and a point while its pairs are: bytes.
+const SORTED_PAIR_BYTES: u64 = 24;
+const LISTED_POINT_BYTES: u64 = 28;
+
+/// Pairs that a build sorts in one go, at most, with so many bytes of the device's memory left.
+pub(crate) fn slab_pairs(points: u64, left: u64) -> u32 {
+    let room = left.saturating_sub(points * LISTED_POINT_BYTES) / SORTED_PAIR_BYTES;
+    (points * SLAB_PAIRS_PER_POINT).min(room).clamp(SLAB_PAIRS, MOST_SLAB_PAIRS) as u32
+}
+
+/// Bytes of a trust ball, and how many are put in order by a dispatch: what it writes fits into any binding.
+const BALL_BYTES: u64 = 16;
+const BALLS_AT_ONCE: u32 = 1 << 22;
 
 /// What all slabs of a build share.
 struct Counting {
     order: Buffer,
+    /// In that order.
+    balls: Buffer,
     offsets: Buffer,
     /// Of large balls alone; one word where there are none.
     large_offsets: Buffer,
@@ -62,6 +81,7 @@ pub(crate) struct GridLists {
 
 pub(crate) struct GridBuild {
     device: Arc<Device>,
+    order: Kernel,
     count: Kernel,
     emit: Kernel,
     emit_large: Kernel,
@@ -70,29 +90,40 @@ pub(crate) struct GridBuild {
     list_points: Kernel,
     scan: Scan,
     sort: Sort,
+    /// Pairs of one slab, at most, unless it is a single layer.
+    slab_pairs: u32,
 }
 
 impl GridBuild {
-    /// `texels`: polynomials are read through a texel buffer.
-    pub fn new(device: &Arc<Device>, texels: bool) -> Result<Self, GpuError> {
+    /// `texels`: polynomials are read through a texel buffer. For `slab_pairs` at most sorted in one go.
+    pub fn new(device: &Arc<Device>, texels: bool, slab_pairs: u32) -> Result<Self, GpuError> {
         let kernel = |name, modules: [fn() -> Vec<u32>; 2], used: &[u32]| {
+            let is_written = name == "order_balls";
             let bindings: Vec<(u32, Binding)> = used
                 .iter()
                 .map(|&at| match (at, texels) {
                     (GRID_POLYNOMIALS, true) => (at, Binding::UniformTexelBuffer(Texel::Four)),
+                    (GRID_BALLS, true) if !is_written => {
+                        (at, Binding::UniformTexelBuffer(Texel::Four))
+                    }
                     _ => (at, Binding::StorageBuffer),
                 })
                 .collect();
             let module = modules[usize::from(texels)]();
             Kernel::new(device, name, &module, &bindings, size_of::<GridParams>())
         };
-        let counted = [GRID_INFO, GRID_POLYNOMIALS, GRID_ORDER, GRID_OFFSETS, GRID_LARGE];
-        let emitted =
-            [GRID_INFO, GRID_POLYNOMIALS, GRID_ORDER, GRID_OFFSETS, GRID_KEYS, GRID_SLOTS];
+        let ordered = [GRID_POLYNOMIALS, GRID_ORDER, GRID_BALLS];
+        let counted = [GRID_INFO, GRID_BALLS, GRID_OFFSETS, GRID_LARGE];
+        let emitted = [GRID_INFO, GRID_BALLS, GRID_ORDER, GRID_OFFSETS, GRID_KEYS, GRID_SLOTS];
         let large = [&emitted[..], &[GRID_LARGE]].concat();
         let ranged = [GRID_INFO, GRID_KEYS, GRID_CELLS];
         Ok(Self {
             device: Arc::clone(device),
+            order: kernel(
+                "order_balls",
+                [spirv::order_balls, spirv::order_balls_texels],
+                &ordered,
+            )?,
             count: kernel("grid_count", [spirv::grid_count, spirv::grid_count_texels], &counted)?,
             emit: kernel("grid_emit", [spirv::grid_emit, spirv::grid_emit_texels], &emitted)?,
             emit_large: kernel(
@@ -126,6 +157,7 @@ impl GridBuild {
             )?,
             scan: Scan::new(device)?,
             sort: Sort::new(device)?,
+            slab_pairs,
         })
     }
 
@@ -158,7 +190,7 @@ impl GridBuild {
             return Ok(GridLists { cells, slots: Buffer::new(device, "cell slots", 16)? });
         }
         if let ([io], [(counting, whole)]) = (levels, &counted[..])
-            && whole.is_sorted_at_once()
+            && whole.is_sorted_at_once(self.slab_pairs)
         {
             let pairs = self.sorted_pairs(rec, io, counting, whole, BALL_MARGIN)?;
             self.record_ranges(rec, io, &pairs, whole, 0, &cells);
@@ -173,12 +205,15 @@ impl GridBuild {
         }
         let mut first_pair = 0;
         for (io, (counting, whole)) in levels.iter().zip(&counted) {
-            let mut left =
-                if whole.is_sorted_at_once() { vec![whole.layers()] } else { whole.parts() };
+            let mut left = if whole.is_sorted_at_once(self.slab_pairs) {
+                vec![whole.layers()]
+            } else {
+                whole.parts(self.slab_pairs)
+            };
             while let Some(layers) = left.pop() {
                 let slab = self.count(rec, io, counting, layers, BALL_MARGIN)?;
-                if !slab.is_sorted_at_once() {
-                    left.extend(slab.parts());
+                if !slab.is_sorted_at_once(self.slab_pairs) {
+                    left.extend(slab.parts(self.slab_pairs));
                 } else if slab.pairs > 0 {
                     let pairs = self.sorted_pairs(rec, io, counting, &slab, BALL_MARGIN)?;
                     self.record_ranges(rec, io, &pairs, &slab, first_pair, &cells);
@@ -247,7 +282,7 @@ impl GridBuild {
     ) -> Result<Vec<(Counting, Slab)>, GpuError> {
         let mut counted = Vec::new();
         for io in levels {
-            let counting = self.counting(io)?;
+            let counting = self.counting(rec, io)?;
             let layers = [0, io.level.grid.resolution[2]];
             let whole = self.count(rec, io, &counting, layers, ball_scale)?;
             counted.push((counting, whole));
@@ -255,19 +290,30 @@ impl GridBuild {
         Ok(counted)
     }
 
-    fn counting(&self, io: &GridBuildIo<'_>) -> Result<Counting, GpuError> {
+    fn counting(&self, rec: &mut Work, io: &GridBuildIo<'_>) -> Result<Counting, GpuError> {
         let device = &self.device;
-        let bytes = (io.order.len() as u64 + 1) * 4;
-        Ok(Counting {
+        let points = io.order.len() as u32;
+        let bytes = (u64::from(points) + 1) * 4;
+        let of = |asked: bool| if asked { bytes } else { 4 };
+        let counting = Counting {
             order: Buffer::from_slice(device, "point order", &io.order)?,
+            balls: Buffer::paged(device, "ordered balls", u64::from(points) * BALL_BYTES)?,
             offsets: Buffer::new(device, "pair offsets", bytes)?,
-            large_offsets: Buffer::new(
-                device,
-                "large pair offsets",
-                if io.any_large { bytes } else { 4 },
-            )?,
-            levels: Scan::levels(device, io.order.len() as u32 + 1)?,
-        })
+            large_offsets: Buffer::new(device, "large pair offsets", of(io.any_large))?,
+            levels: Scan::levels(device, points + 1)?,
+        };
+        for first_pair in (0..points).step_by(BALLS_AT_ONCE as usize) {
+            let point_count = BALLS_AT_ONCE.min(points - first_pair);
+            let [at, bytes] =
+                [first_pair, point_count].map(|points| u64::from(points) * BALL_BYTES);
+            rec.pass("order_balls", &self.order)
+                .buffer(GRID_POLYNOMIALS, io.polynomials)
+                .buffer(GRID_ORDER, &counting.order)
+                .buffer_part(GRID_BALLS, &counting.balls, at, bytes)
+                .push(&GridParams { point_count, first_pair, ..GridParams::zeroed() })
+                .dispatch(line(point_count));
+        }
+        Ok(counting)
     }
 
     /// Counts the pairs of some layers, and leaves the offsets of each point's.
@@ -281,7 +327,7 @@ impl GridBuild {
     ) -> Result<Slab, GpuError> {
         let points = io.order.len() as u32;
         let slab = Slab { first_layer, end_layer, pairs: 0, large_pairs: 0 };
-        let Counting { order, offsets, large_offsets, levels } = counting;
+        let Counting { balls, offsets, large_offsets, levels, .. } = counting;
         let end = u64::from(points) * 4;
         rec.fill(offsets, end, 4, 0);
         if io.any_large {
@@ -289,8 +335,7 @@ impl GridBuild {
         }
         rec.pass("grid_count", &self.count)
             .buffer(GRID_INFO, &io.grid_info)
-            .buffer(GRID_POLYNOMIALS, io.polynomials)
-            .buffer(GRID_ORDER, order)
+            .buffer(GRID_BALLS, balls)
             .buffer(GRID_OFFSETS, offsets)
             .buffer(GRID_LARGE, large_offsets)
             .push(&slab.params(io, ball_scale))
@@ -325,7 +370,7 @@ impl GridBuild {
         let params = slab.params(io, ball_scale);
         rec.pass("grid_emit", &self.emit)
             .buffer(GRID_INFO, &io.grid_info)
-            .buffer(GRID_POLYNOMIALS, io.polynomials)
+            .buffer(GRID_BALLS, &counting.balls)
             .buffer(GRID_ORDER, &counting.order)
             .buffer(GRID_OFFSETS, &counting.offsets)
             .buffer(GRID_KEYS, &pairs.keys)
@@ -335,7 +380,7 @@ impl GridBuild {
         if slab.large_pairs > 0 {
             rec.pass("grid_emit_large", &self.emit_large)
                 .buffer(GRID_INFO, &io.grid_info)
-                .buffer(GRID_POLYNOMIALS, io.polynomials)
+                .buffer(GRID_BALLS, &counting.balls)
                 .buffer(GRID_ORDER, &counting.order)
                 .buffer(GRID_OFFSETS, &counting.offsets)
                 .buffer(GRID_LARGE, &counting.large_offsets)
@@ -370,8 +415,8 @@ impl GridBuild {
 }
 
 impl Slab {
-    fn is_sorted_at_once(&self) -> bool {
-        self.pairs <= SLAB_PAIRS || self.end_layer - self.first_layer == 1
+    fn is_sorted_at_once(&self, most: u32) -> bool {
+        self.pairs <= most || self.end_layer - self.first_layer == 1
     }
 
     fn layers(&self) -> [u32; 2] {
@@ -379,9 +424,9 @@ impl Slab {
     }
 
     /// Its layers in parts that are likely to be small enough, the lowest last.
-    fn parts(&self) -> Vec<[u32; 2]> {
+    fn parts(&self, most: u32) -> Vec<[u32; 2]> {
         let Self { first_layer: first, end_layer: end, pairs, .. } = *self;
-        let parts = pairs.div_ceil(SLAB_PAIRS).max(2);
+        let parts = pairs.div_ceil(most).max(2);
         let layers = (end - first).div_ceil(parts);
         let starts = (first..end).step_by(layers as usize);
         starts.rev().map(|start| [start, end.min(start + layers)]).collect()
@@ -397,5 +442,21 @@ impl Slab {
             first_pair: 0,
             any_large: u32::from(io.any_large),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slabs_are_as_large_as_points_memory_and_bindings_allow() {
+        let heap = 2 << 30;
+        assert_eq!(slab_pairs(1_000, heap), 7_000_000);
+        assert_eq!(slab_pairs(5_000_000, heap), 15_000_000);
+        assert_eq!(slab_pairs(100_000_000, 100 * heap), 32_000_000);
+        let left = 10_000_000 * (28 + 24);
+        assert_eq!(slab_pairs(10_000_000, left), 10_000_000, "one a point");
+        assert_eq!(slab_pairs(10_000_000, 0), 7_000_000);
     }
 }

@@ -23,7 +23,7 @@ pub use tree::Tree;
 use crate::{Cloud, Grids, Watch, plan_grids};
 use fitting::{Fitted, fit_all};
 use gpu::{Buffer, Device, GpuError};
-use grid_build::{GridBuild, GridBuildIo};
+use grid_build::{GridBuild, GridBuildIo, slab_pairs};
 use kernels::layout::{FitOutcome, FitParams, GridLevel, LINE_ROW, Polynomial};
 use std::sync::Arc;
 use work::Work;
@@ -166,7 +166,9 @@ impl Surfaces {
         watch: &dyn Watch,
     ) -> Result<Self, BuildError> {
         let refines = needed.point_cells;
-        Memory::of(cloud.points.len() as u64, needed).require(device.limits().heap_bytes)?;
+        let heap = device.limits().heap_bytes;
+        let memory = Memory::of(cloud.points.len() as u64, needed);
+        memory.require(heap)?;
         let mut work = Work::new(device)?;
         let fitted = (cloud.points.len() * size_of::<Polynomial>()) as u64;
         let bytes = fitted + size_of_val(stand_ins) as u64;
@@ -188,7 +190,8 @@ impl Surfaces {
             true => plan_grids(&cloud.points, &outcomes, resolution, needed.tree),
             false => Grids::around(&cloud.points, &outcomes),
         };
-        let build = GridBuild::new(device, texels)?;
+        let slab_pairs = slab_pairs(memory.points, heap.saturating_sub(memory.kept()));
+        let build = GridBuild::new(device, texels, slab_pairs)?;
         let widest = outcomes.iter().map(|outcome| outcome.trust).fold(0.0, f32::max);
         let io = |(at, level): (usize, &GridLevel)| -> Result<GridBuildIo<'_>, GpuError> {
             Ok(GridBuildIo {

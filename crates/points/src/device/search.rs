@@ -37,7 +37,7 @@ const CAPACITY: u32 = 96;
 const LARGE_CAPACITY: u32 = 4096;
 const LARGE_GROUPS: u32 = 256;
 /// Leaves of a batch that the host searches without a tree.
-const WITHOUT_TREE: usize = 8;
+const WITHOUT_TREE: usize = 64;
 
 /// The pipelines.
 pub(crate) struct Search {
