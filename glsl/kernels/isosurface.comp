@@ -65,7 +65,7 @@ bool is_inside(uint path, uint object) {
 uint seen_from(VolumeInfo volume, vec3 x) {
     vec3 cells_off = (x - volume.grid.origin) * volume.grid.inverse_edge;
     bool inside = all(greaterThanEqual(cells_off, vec3(0.0))) && all(lessThan(cells_off, vec3(volume.grid.resolution)));
-    return inside ? volume_cells[volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))].counts : CELL_NOTHING;
+    return inside ? volume_cell(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))).counts : CELL_NOTHING;
 }
 
 // The side of a place that need not be looked at, unless it tells where the surface is: where there are no
@@ -164,35 +164,30 @@ void main() {
         bool particles = volume.kernel == VOLUME_SPH;
 
         while (search.row < rows && work_left > 0u) {
-            uvec2 range = row_points(volume, low, high, search.row);
+            uvec2 range = row_points(volume, low, high, search.row, x, reach);
             uint first = range.x + search.cursor;
             uint count = min(range.y - first, AT_ONCE);
-            uint gaussians = particles ? 0u : count;
-            for (uint i = 0u; i < gaussians; ++i) {
-                VolumePoint point = volume_points[first + i];
-                vec3 y = point.position - x;
-                float square = dot3(y, y);
-                float weight =
-                    square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
-                search.numerator += weight * point.scalar;
-                search.denominator += weight;
+            uint end_of_turn = first + count;
+            for (uint i = particles ? end_of_turn : first; i < end_of_turn; i += 4u) {
+                FourPoints four = four_points(i, end_of_turn, x);
+                vec4 weights = gaussians(volume, four);
+                search.numerator = add_up(search.numerator, weights * four.scalars);
+                search.denominator = add_up(search.denominator, weights);
             }
-            uint splines = particles ? count : 0u;
-            for (uint i = 0u; i < splines; ++i) {
-                VolumePoint point = volume_points[first + i];
-                vec3 y = point.position - x;
-                float weight = spline(sqrt(dot3(y, y)) * inverse_lengths[first + i]);
-                search.numerator += weight * point.scalar;
-                search.denominator += weight;
+            for (uint i = particles ? first : end_of_turn; i < end_of_turn; i += 4u) {
+                FourPoints four = four_points(i, end_of_turn, x);
+                vec4 weights = splines(four, inverse_lengths_of(four));
+                search.numerator = add_up(search.numerator, weights * four.scalars);
+                search.denominator = add_up(search.denominator, weights);
             }
             uint pulls = turning ? count : 0u;
             for (uint i = 0u; i < pulls; ++i) {
-                VolumePoint point = volume_points[first + i];
+                VolumePoint point = volume_point(first + i);
                 vec3 y = point.position - x;
                 float square = dot3(y, y);
                 float gaussian =
                     square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
-                float inverse_length = particles ? inverse_lengths[first + i] : 0.0;
+                float inverse_length = particles ? inverse_length_of(first + i) : 0.0;
                 float pull = particles ? spline_pull(sqrt(square) * inverse_length, inverse_length) : gaussian;
                 search.pull += (pull * point.scalar) * y;
                 search.weights_pull += (particles ? 0.0 : pull) * y;

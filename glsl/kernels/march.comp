@@ -49,7 +49,19 @@ uint media_word(uint ray, uint word) {
 #ifdef LIT
 layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = MARCH_LIGHT) buffer MarchLights { MarchLight march_lights[]; };
+#ifdef QUEUE
+layout(binding = MARCH_VISIBLE) uniform usamplerBuffer visible_texels; // four each
+
+vec4 visible_from(uint point) {
+    return uintBitsToFloat(texelFetch(visible_texels, int(point)));
+}
+#else
 layout(std430, binding = MARCH_VISIBLE) readonly buffer Visible { vec4 visible[]; };
+
+vec4 visible_from(uint point) {
+    return visible[point];
+}
+#endif
 #endif
 layout(push_constant) uniform Push { MarchParams params; };
 
@@ -84,6 +96,14 @@ vec2 way_through(Ray ray, uint path, float end) {
     return way;
 }
 
+#ifdef LIT
+// What reaches the points, by their weights.
+vec4 visible_at(vec4 sum, vec4 weights, FourPoints four) {
+    return (((sum + weights.x * visible_from(four.at[0])) + weights.y * visible_from(four.at[1]))
+        + weights.z * visible_from(four.at[2])) + weights.w * visible_from(four.at[3]);
+}
+#endif
+
 struct Sample {
     vec3 x;
     float length_of_step;
@@ -101,7 +121,7 @@ Sample sample_of(Ray ray, vec2 way, uint place) {
 bool may_be_seen(VolumeInfo volume, vec3 x) {
     vec3 cells_off = (x - volume.grid.origin) * volume.grid.inverse_edge;
     bool inside = all(greaterThanEqual(cells_off, vec3(0.0))) && all(lessThan(cells_off, vec3(volume.grid.resolution)));
-    return inside && volume_cells[volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))].counts != 0u;
+    return inside && volume_cell(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))).counts != 0u;
 }
 
 // What a ray shows of the scalar that stands for its whole way: a layer of one radius, or all of it.
@@ -206,36 +226,32 @@ void main() {
         bool particles = volume.kernel == VOLUME_SPH;
 
         while (march.row < rows && work_left > 0u) {
-            uvec2 range = row_points(volume, low, high, march.row);
+            uvec2 range = row_points(volume, low, high, march.row, x, reach);
             uint first = range.x + march.cursor;
             uint count = min(range.y - first, AT_ONCE);
-            uint gaussians = particles ? 0u : count;
-            for (uint i = 0u; i < gaussians; ++i) {
-                VolumePoint point = volume_points[first + i];
-                vec3 y = point.position - x;
-                float square = dot3(y, y);
-                float weight =
-                    square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
-                march.numerator += weight * point.scalar;
-                march.denominator += weight;
+            uint end = first + count;
+            for (uint i = particles ? end : first; i < end; i += 4u) {
+                FourPoints four = four_points(i, end, x);
+                vec4 weights = gaussians(volume, four);
+                vec4 weighted = weights * four.scalars;
+                march.numerator = add_up(march.numerator, weighted);
+                march.denominator = add_up(march.denominator, weights);
 #ifdef LIT
-                sums.pull += (weight * point.scalar) * y;
-                sums.weights_pull += weight * y;
-                sums.visible += weight * visible[first + i];
+                sums.pull = add_up(sums.pull, weighted, four);
+                sums.weights_pull = add_up(sums.weights_pull, weights, four);
+                sums.visible = visible_at(sums.visible, weights, four);
 #endif
             }
-            uint splines = particles ? count : 0u;
-            for (uint i = 0u; i < splines; ++i) {
-                VolumePoint point = volume_points[first + i];
-                vec3 y = point.position - x;
-                float inverse_length = inverse_lengths[first + i];
-                float q = sqrt(dot3(y, y)) * inverse_length;
-                float weight = spline(q);
-                march.numerator += weight * point.scalar;
-                march.denominator += weight;
+            for (uint i = particles ? first : end; i < end; i += 4u) {
+                FourPoints four = four_points(i, end, x);
+                vec4 inverse_lengths = inverse_lengths_of(four);
+                vec4 weights = splines(four, inverse_lengths);
+                march.numerator = add_up(march.numerator, weights * four.scalars);
+                march.denominator = add_up(march.denominator, weights);
 #ifdef LIT
-                sums.pull += (spline_pull(q, inverse_length) * point.scalar) * y;
-                sums.visible += weight * visible[first + i];
+                vec4 pulls = spline_pulls(sqrt(four.squares) * inverse_lengths, inverse_lengths);
+                sums.pull = add_up(sums.pull, mix(vec4(0.0), pulls * four.scalars, four.are_there), four);
+                sums.visible = visible_at(sums.visible, weights, four);
 #endif
             }
             bool row_ends = first + count >= range.y;

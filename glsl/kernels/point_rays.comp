@@ -31,10 +31,10 @@ layout(push_constant) uniform Push { PointLightParams params; };
 void main() {
     uint at = list_index();
     if (at >= params.count) return;
-    vec3 x = volume_points[params.first + at].position;
+    vec3 x = volume_point(params.first + at).position;
     LightSample light = sample_light(lights[params.light], x, vec2(0.5));
     VolumeInfo volume = volumes[params.volume];
-    bool seen = volume_cells[volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))].counts != CELL_NOTHING;
+    bool seen = volume_cell(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))).counts != CELL_NOTHING;
     Ray ray = new_ray(x, light.towards, seen ? enter_scene(x, light.towards) : NONE, NONE);
     ray.hit_t = light.distance;
     store_ray(at, ray);

@@ -43,21 +43,25 @@ vec3 normalize3(vec3 v) {
 }
 
 // e^x for -80 <= x <= 0, and 0 below -80, where a weight no longer matters. Error under 2 ulp.
-// Reduction after Cody and Waite, Software Manual for the Elementary Functions, ch. 6.
-float exp_negative(float x) {
-    float clamped = max(x, -80.0);
-    float n = floor(clamped * 1.44269504 + 0.5);
-    float r = (clamped - n * 0.693359375) + n * 2.12194440e-4;
-    float p = 1.9875691500e-4;
-    p = p * r + 1.3981999507e-3;
-    p = p * r + 8.3334519073e-3;
-    p = p * r + 4.1665795894e-2;
-    p = p * r + 1.6666665459e-1;
-    p = p * r + 5.0000001201e-1;
-    float e = (p * (r * r) + r) + 1.0;
-    float scale = uintBitsToFloat(uint(int(n) + 127) << 23);
-    return x < -80.0 ? 0.0 : e * scale;
+// Reduction after Cody and Waite, Software Manual for the Elementary Functions, ch. 6. Of one number, or of four: each
+// step waits for the one before, and four do so together.
+#define EXP_NEGATIVE(Floats, Ints, Uints, below) \
+Floats exp_negative(Floats x) { \
+    Floats clamped = max(x, Floats(-80.0)); \
+    Floats n = floor(clamped * 1.44269504 + 0.5); \
+    Floats r = (clamped - n * 0.693359375) + n * 2.12194440e-4; \
+    Floats p = r * 1.9875691500e-4 + 1.3981999507e-3; \
+    p = p * r + 8.3334519073e-3; \
+    p = p * r + 4.1665795894e-2; \
+    p = p * r + 1.6666665459e-1; \
+    p = p * r + 5.0000001201e-1; \
+    Floats e = (p * (r * r) + r) + 1.0; \
+    Floats scale = uintBitsToFloat(Uints(Ints(n) + 127) << 23); \
+    return mix(e * scale, Floats(0.0), below(x, Floats(-80.0))); \
 }
+#define IS_BELOW(a, b) ((a) < (b))
+EXP_NEGATIVE(float, int, uint, IS_BELOW)
+EXP_NEGATIVE(vec4, ivec4, uvec4, lessThan)
 
 // Sine and cosine for |x| <= pi / 4. Error under 1 ulp. Polynomials after Moshier's Cephes, sinf.c.
 float sin_octant(float x) {

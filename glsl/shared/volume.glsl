@@ -8,10 +8,61 @@
 #include "grid.glsl"
 
 layout(std430, binding = MARCH_VOLUMES) readonly buffer Volumes { VolumeInfo volumes[]; };
+
+// With QUEUE through uniform texel buffers (records.glsl says why). Both give the same bits.
+#ifdef QUEUE
+layout(binding = MARCH_CELLS) uniform usamplerBuffer volume_cell_texels; // two values each
+layout(binding = MARCH_POINTS) uniform usamplerBuffer volume_point_texels; // four
+layout(binding = MARCH_LENGTHS) uniform usamplerBuffer length_texels; // one
+layout(binding = MARCH_STOPS) uniform usamplerBuffer stop_texels; // four, two a stop
+
+VolumeCell volume_cell(uint at) {
+    uvec2 words = texelFetch(volume_cell_texels, int(at)).xy;
+    return VolumeCell(words.x, words.y);
+}
+
+VolumePoint volume_point(uint at) {
+    vec4 words = uintBitsToFloat(texelFetch(volume_point_texels, int(at)));
+    return VolumePoint(words.xyz, words.w);
+}
+
+float inverse_length_of(uint at) {
+    return uintBitsToFloat(texelFetch(length_texels, int(at)).x);
+}
+
+vec4 color_of_stop(uint at) {
+    return uintBitsToFloat(texelFetch(stop_texels, int(2u * at)));
+}
+
+float value_of_stop(uint at) {
+    return uintBitsToFloat(texelFetch(stop_texels, int(2u * at) + 1).x);
+}
+#else
 layout(std430, binding = MARCH_CELLS) readonly buffer VolumeCells { VolumeCell volume_cells[]; };
 layout(std430, binding = MARCH_POINTS) readonly buffer VolumePoints { VolumePoint volume_points[]; };
 layout(std430, binding = MARCH_LENGTHS) readonly buffer Lengths { float inverse_lengths[]; };
 layout(std430, binding = MARCH_STOPS) readonly buffer Stops { VolumeStop stops[]; };
+
+VolumeCell volume_cell(uint at) {
+    return volume_cells[at];
+}
+
+VolumePoint volume_point(uint at) {
+    return volume_points[at];
+}
+
+float inverse_length_of(uint at) {
+    return inverse_lengths[at];
+}
+
+vec4 color_of_stop(uint at) {
+    return vec4(stops[at].color, stops[at].extinction);
+}
+
+float value_of_stop(uint at) {
+    return stops[at].value;
+}
+#endif
 
 // Where a ray is within a box: x > y, nowhere.
 vec2 within_box(vec3 low, vec3 high, vec3 o, vec3 d) {
@@ -21,19 +72,83 @@ vec2 within_box(vec3 low, vec3 high, vec3 o, vec3 d) {
     return clip_slab(range, low.z, high.z, o.z, d.z);
 }
 
-// Points of the row-th row of cells, along x, around a sample.
-uvec2 row_points(VolumeInfo volume, uvec3 low, uvec3 high, uint row) {
+#define ROW_MARGIN 1e-3 // of a cell: rounding moves no point of a cell farther out of it
+
+// Points of the row-th row of cells, along x, around a sample: in those cells alone that its reach meets. What is left
+// out has no weight.
+uvec2 row_points(VolumeInfo volume, uvec3 low, uvec3 high, uint row, vec3 x, float reach) {
     uint height = high.y - low.y + 1u;
-    uvec2 yz = low.yz + uvec2(row % height, row / height);
-    uint first = volume.first_cell + cell_id(volume.grid, uvec3(low.x, yz));
-    return uvec2(volume_cells[first].first, volume_cells[first + (high.x - low.x) + 1u].first);
+    uint layer = uint((float(row) + 0.5) / float(height)); // row / height, which drivers divide a lane at a time
+    uvec2 yz = low.yz + uvec2(row - layer * height, layer);
+    vec3 at = (x - volume.grid.origin) * volume.grid.inverse_edge; // in cells, as all of these
+    float radius = reach * volume.grid.inverse_edge;
+    vec2 away = max(max(vec2(yz) - at.yz, at.yz - vec2(yz + 1u)) - ROW_MARGIN, vec2(0.0));
+    float square = radius * radius - (away.x * away.x + away.y * away.y);
+    float half_chord = sqrt(max(square, 0.0)) + ROW_MARGIN;
+    uint first_x = clamp(uint(max(at.x - half_chord, 0.0)), low.x, high.x);
+    uint last_x = clamp(uint(max(at.x + half_chord, 0.0)), first_x, high.x);
+    uint row_first = volume.first_cell + cell_id(volume.grid, uvec3(0u, yz));
+    uvec2 range = uvec2(volume_cell(row_first + first_x).first, volume_cell(row_first + last_x + 1u).first);
+    return square >= 0.0 ? range : uvec2(0u);
+}
+
+// Points of a row, four at a time, so that they wait for what their weights take together.
+struct FourPoints {
+    uint at[4];
+    vec3 y[4]; // from x
+    vec4 scalars;
+    vec4 squares; // of their distances from x
+    bvec4 are_there; // they are not behind the last
+};
+
+// Those from a place on and before the end, which is behind it.
+FourPoints four_points(uint first, uint end, vec3 x) {
+    FourPoints four;
+    uint last = end - 1u;
+#define POINT_OF_FOUR(i) { \
+    four.are_there[i] = first + i <= last; \
+    four.at[i] = min(first + i, last); \
+    VolumePoint point = volume_point(four.at[i]); \
+    four.y[i] = point.position - x; \
+    four.scalars[i] = point.scalar; \
+    four.squares[i] = dot3(four.y[i], four.y[i]); \
+}
+    POINT_OF_FOUR(0u) POINT_OF_FOUR(1u) POINT_OF_FOUR(2u) POINT_OF_FOUR(3u)
+    return four;
+}
+
+bvec4 both(bvec4 a, bvec4 b) {
+    return bvec4(a.x && b.x, a.y && b.y, a.z && b.z, a.w && b.w);
+}
+
+vec4 gaussians(VolumeInfo volume, FourPoints four) {
+    bvec4 count = both(four.are_there, lessThanEqual(four.squares, vec4(volume.square_radius)));
+    return mix(vec4(0.0), exp_negative(-four.squares * volume.inverse_width), count);
+}
+
+// In the order of the points, as if one by one.
+float add_up(float sum, vec4 terms) {
+    return (((sum + terms.x) + terms.y) + terms.z) + terms.w;
+}
+
+vec3 add_up(vec3 sum, vec4 weights, FourPoints four) {
+    return (((sum + weights.x * four.y[0]) + weights.y * four.y[1]) + weights.z * four.y[2]) + weights.w * four.y[3];
 }
 
 // Monaghan's cubic spline times pi h^3, at q = d / h: 1 - 3/2 q^2 + 3/4 q^3 below 1, (2 - q)^3 / 4 below 2.
-float spline(float q) {
-    float far = max(2.0 - q, 0.0);
-    float near = max(1.0 - q, 0.0);
+vec4 spline(vec4 q) {
+    vec4 far = max(2.0 - q, vec4(0.0));
+    vec4 near = max(1.0 - q, vec4(0.0));
     return 0.25 * (far * far * far) - near * near * near;
+}
+
+vec4 inverse_lengths_of(FourPoints four) {
+    return vec4(inverse_length_of(four.at[0]), inverse_length_of(four.at[1]), inverse_length_of(four.at[2]),
+                inverse_length_of(four.at[3]));
+}
+
+vec4 splines(FourPoints four, vec4 inverse_lengths) {
+    return mix(vec4(0.0), spline(sqrt(four.squares) * inverse_lengths), four.are_there);
 }
 
 // What the gradient of the cubic spline is along y = p - x, by 1 / h.
@@ -42,6 +157,11 @@ float spline_pull(float q, float inverse_length) {
     bool near = q < 1.0;
     float slope = near ? 3.0 - 2.25 * q : 0.75 * (far * far) / (near ? 1.0 : q);
     return slope * (inverse_length * inverse_length);
+}
+
+vec4 spline_pulls(vec4 q, vec4 inverse_lengths) {
+    return vec4(spline_pull(q.x, inverse_lengths.x), spline_pull(q.y, inverse_lengths.y),
+                spline_pull(q.z, inverse_lengths.z), spline_pull(q.w, inverse_lengths.w));
 }
 
 // The direction of a scalar's gradient, from the sums of the weights' gradients.
@@ -55,14 +175,15 @@ vec4 transfer(VolumeInfo volume, float scalar) {
     uint high = volume.first_stop + volume.stop_count; // one behind
     while (high - low > 1u) {
         uint middle = (low + high) / 2u;
-        bool above = stops[middle].value > scalar;
+        bool above = value_of_stop(middle) > scalar;
         high = above ? middle : high;
         low = above ? low : middle;
     }
-    VolumeStop from = stops[low];
-    VolumeStop to = stops[min(low + 1u, volume.first_stop + volume.stop_count - 1u)];
-    float span = to.value - from.value;
-    float part = span > 0.0 ? min(max((scalar - from.value) / (span > 0.0 ? span : 1.0), 0.0), 1.0) : 0.0;
-    return vec4(from.color + part * (to.color - from.color), from.extinction + part * (to.extinction - from.extinction));
+    uint next = min(low + 1u, volume.first_stop + volume.stop_count - 1u);
+    float value = value_of_stop(low);
+    float span = value_of_stop(next) - value;
+    float part = span > 0.0 ? min(max((scalar - value) / (span > 0.0 ? span : 1.0), 0.0), 1.0) : 0.0;
+    vec4 from = color_of_stop(low), to = color_of_stop(next);
+    return from + part * (to - from);
 }
 #endif

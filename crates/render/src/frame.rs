@@ -235,7 +235,10 @@ impl Renderer {
         )?;
         let records = plan.cloud.points.len() as u64 * TEXELS_A_POLYNOMIAL;
         let lists = (surfaces.cells.bytes() / 8).max(u64::from(MAX_DISC_PAIRS));
-        let longest = records.max(lists).max(u64::from(rays) * TEXELS_A_RAY);
+        let of_volumes =
+            [plan.volumes.points.len(), plan.volumes.cells.len(), 2 * plan.volumes.stops.len()];
+        let of_volumes = of_volumes.into_iter().max().unwrap_or(0) as u64;
+        let longest = records.max(lists).max(of_volumes).max(u64::from(rays) * TEXELS_A_RAY);
         let form = RayLoop::of(plan.ray_loop, device, longest);
         let live_rays = || Buffer::new(device, "list of live rays", u64::from(rays) * 4);
         let skips = if surfaces.is_listed && surfaces.grids.skip_cells() { SCENE_SKIPS } else { 0 };

@@ -1,6 +1,6 @@
 //! The pass `isosurface`.
 
-use super::line;
+use super::{line, volume_lists};
 use crate::state::{RayLoop, StoredRays, Touch};
 use crate::volumes::VolumeBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
@@ -45,17 +45,8 @@ impl Isosurface {
         let params = size_of::<MarchParams>();
         let kernel = |module: &[u32], of: u32| {
             let mut bindings = form.bindings(Touch::Updates);
-            let buffers = [
-                TRACE_LIVE,
-                WAVE_PATHS,
-                MARCH_VOLUMES,
-                MARCH_CELLS,
-                MARCH_POINTS,
-                MARCH_LENGTHS,
-                MARCH_STOPS,
-                ISO_SEARCHES,
-                of,
-            ];
+            bindings.extend(volume_lists(form));
+            let buffers = [TRACE_LIVE, WAVE_PATHS, MARCH_VOLUMES, ISO_SEARCHES, of];
             bindings.extend(buffers.map(|binding| (binding, Binding::StorageBuffer)));
             Kernel::new(device, Self::NAME, module, &bindings, params)
         };

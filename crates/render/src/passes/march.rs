@@ -1,6 +1,6 @@
 //! The pass `march`.
 
-use super::line;
+use super::{line, volume_lists};
 use crate::state::{RayLoop, StoredRays, Touch};
 use crate::volumes::VolumeBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
@@ -46,19 +46,11 @@ impl March {
         let params = size_of::<MarchParams>();
         let kernel = |module: &[u32], more: &[u32]| {
             let mut bindings = form.bindings(Touch::Reads);
-            let buffers = [
-                TRACE_LIVE,
-                WAVE_PATHS,
-                MARCH_VOLUMES,
-                MARCH_CELLS,
-                MARCH_POINTS,
-                MARCH_LENGTHS,
-                MARCH_STOPS,
-                MARCH_STATE,
-            ];
+            bindings.extend(volume_lists(form));
+            let buffers = [TRACE_LIVE, WAVE_PATHS, MARCH_VOLUMES, MARCH_STATE];
             let all = buffers.iter().chain(more);
             bindings.extend(all.map(|&binding| match binding {
-                SHADE_OBJECTS => (binding, form.read(Texel::Four)),
+                SHADE_OBJECTS | MARCH_VISIBLE => (binding, form.read(Texel::Four)),
                 _ => (binding, Binding::StorageBuffer),
             }));
             Kernel::new(device, Self::NAME, module, &bindings, params)

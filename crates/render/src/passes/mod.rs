@@ -45,8 +45,9 @@ pub(crate) use tree_trace::TreeTrace;
 use crate::state::RayLoop;
 use gpu::{Binding, Texel};
 use kernels::layout::{
-    DISC_KEYS_IN, DISC_LEAVES_IN, DISC_RANGES_IN, TILE_GROUP, TRACE_CELLS, TRACE_POLYNOMIALS,
-    TRACE_SLOTS, WAVE_LIT_HITS, WAVE_LIT_RAYS, WAVE_PATHS,
+    DISC_KEYS_IN, DISC_LEAVES_IN, DISC_RANGES_IN, MARCH_CELLS, MARCH_LENGTHS, MARCH_POINTS,
+    MARCH_STOPS, TILE_GROUP, TRACE_CELLS, TRACE_POLYNOMIALS, TRACE_SLOTS, WAVE_LIT_HITS,
+    WAVE_LIT_RAYS, WAVE_PATHS,
 };
 use points::device::line;
 
@@ -77,6 +78,16 @@ fn disc_lists(form: RayLoop) -> [(u32, Binding); 3] {
         (DISC_RANGES_IN, form.read(Texel::Two)),
         (DISC_KEYS_IN, form.read(Texel::One)),
         (DISC_LEAVES_IN, form.read(Texel::Four)),
+    ]
+}
+
+/// The cells, points and transfer functions of volumes (`glsl/shared/volume.glsl`).
+fn volume_lists(form: RayLoop) -> [(u32, Binding); 4] {
+    [
+        (MARCH_CELLS, form.read(Texel::Two)),
+        (MARCH_POINTS, form.read(Texel::Four)),
+        (MARCH_LENGTHS, form.read(Texel::One)),
+        (MARCH_STOPS, form.read(Texel::Four)),
     ]
 }
 

@@ -1,6 +1,6 @@
 //! The passes `point_rays` and `point_lights`.
 
-use super::line;
+use super::{line, volume_lists};
 use crate::state::{RayLoop, RayState, Touch};
 use crate::volumes::VolumeBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
@@ -40,21 +40,12 @@ impl PointLight {
             bindings.extend(buffers.iter().map(|&binding| (binding, Binding::StorageBuffer)));
             bindings
         };
-        let rays = with(
+        let written = [WAVE_PATHS, WAVE_LIT_RAYS, WAVE_LIGHT_SUMS];
+        let mut rays = with(
             Touch::Writes,
-            &[
-                TRACE_INFO,
-                SHADE_LIGHTS,
-                MARCH_VOLUMES,
-                MARCH_CELLS,
-                MARCH_POINTS,
-                MARCH_LENGTHS,
-                MARCH_STOPS,
-                WAVE_PATHS,
-                WAVE_LIT_RAYS,
-                WAVE_LIGHT_SUMS,
-            ],
+            &[&[TRACE_INFO, SHADE_LIGHTS, MARCH_VOLUMES], &written[..]].concat(),
         );
+        rays.extend(volume_lists(form));
         let lights = with(Touch::Reads, &[WAVE_LIGHT_SUMS, MARCH_VISIBLE]);
         Ok(Self {
             rays: Kernel::new(
