@@ -89,7 +89,7 @@ LeafDiscs discs_of_leaf(DiscParams params, uint leaf) {
         bool covers = span.extent.x > 0u;
         low = covers ? min(low, span.low) : low;
         end = covers ? max(end, span.low + span.extent) : end;
-        nearest = covers ? smaller(nearest, distance) : nearest;
+        nearest = covers && distance < nearest ? distance : nearest;
         discs.spans[i] = span;
     }
     discs.around = TileSpan(low, end.x > 0u ? end - low : uvec2(0u));
