@@ -72,18 +72,19 @@ uint listed_points(uvec4 leaves, uint first, uint next, uint end) {
 }
 
 #ifdef PACKETS
-// Which of those points a ray of the packet may meet: each lane asks for one of a leaf.
+// Which of those points a ray of the packet may meet: each lane asks for one of a leaf. What is voted on is which the
+// packet misses, so that of a lane that should be absent nothing is lost.
 uint met_by_packet(uint points, uvec4 leaves, Packet packet, vec3 eye) {
-    uint met = 0u;
+    uint missed = 0u;
     for (uint i = 0u; i < LEAVES_AT_ONCE; ++i) {
         uint shift = LEAF_POINTS * i;
         if (((points >> shift) & 255u) != 0u) {
             vec4 ball = center_trust_of(slot_of_bit(leaves, shift + packet_lane()));
             vec3 from_eye = ball.xyz - eye;
-            met |= packet_ballot(meets_packet(packet, from_eye, disc_radius(from_eye, ball.w))) << shift;
+            missed |= packet_ballot(!meets_packet(packet, from_eye, disc_radius(from_eye, ball.w))) << shift;
         }
     }
-    return points & met;
+    return points & ~missed;
 }
 #endif
 

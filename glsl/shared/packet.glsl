@@ -1,7 +1,9 @@
 // packet: what eight invocations that run together ask together, for rays from the eye through 4 x 2 pixels.
 //
 // twin    none: what it leaves out no ray of the packet meets
-// A packet is eight lanes of a subgroup, of which larger ones have several.
+// A packet is eight lanes of a subgroup, of which larger ones have several: eight consecutive invocations of a
+// workgroup along one axis, as drivers lay them out (by gl_SubgroupSize, which may be more than there are, they
+// could not be told).
 #ifndef PACKET_GLSL
 #define PACKET_GLSL
 #include "math.glsl"

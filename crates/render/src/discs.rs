@@ -1,4 +1,4 @@
-//! Discs binned into screen tiles: count, scan, emit, sort, ranges (\[T\] §4).
+//! Discs of leaves, eight points each, binned into screen tiles: count, scan, emit, sort, ranges (\[T\] §4).
 //!
 //! Depends on the camera, so it runs for every tile of every picture. Buffers stay from one to the
 //! next and grow where they must.
