@@ -97,63 +97,61 @@ pub(crate) struct GridBuild {
 impl GridBuild {
     /// `texels`: polynomials are read through a texel buffer. For `slab_pairs` at most sorted in one go.
     pub fn new(device: &Arc<Device>, texels: bool, slab_pairs: u32) -> Result<Self, GpuError> {
-        let kernel = |name, modules: [fn() -> Vec<u32>; 2], used: &[u32]| {
-            let is_written = name == "order_balls";
-            let bindings: Vec<(u32, Binding)> = used
-                .iter()
-                .map(|&at| match (at, texels) {
-                    (GRID_POLYNOMIALS, true) => (at, Binding::UniformTexelBuffer(Texel::Four)),
-                    (GRID_BALLS, true) if !is_written => {
-                        (at, Binding::UniformTexelBuffer(Texel::Four))
-                    }
-                    _ => (at, Binding::StorageBuffer),
-                })
-                .collect();
-            let module = modules[usize::from(texels)]();
-            Kernel::new(device, name, &module, &bindings, size_of::<GridParams>())
+        let storage = |used: &[u32]| -> Vec<_> {
+            used.iter().map(|&at| (at, Binding::StorageBuffer)).collect()
         };
-        let ordered = [GRID_POLYNOMIALS, GRID_ORDER, GRID_BALLS];
-        let counted = [GRID_INFO, GRID_BALLS, GRID_OFFSETS, GRID_LARGE];
-        let emitted = [GRID_INFO, GRID_BALLS, GRID_ORDER, GRID_OFFSETS, GRID_KEYS, GRID_SLOTS];
-        let large = [&emitted[..], &[GRID_LARGE]].concat();
-        let ranged = [GRID_INFO, GRID_KEYS, GRID_CELLS];
+        let texels_read = match texels {
+            true => Binding::UniformTexelBuffer(Texel::Four),
+            false => Binding::StorageBuffer,
+        };
+        let kernel = |name, modules: [fn() -> Vec<u32>; 2], read: u32, others: &[u32]| {
+            let bindings = [&[(read, texels_read)], &storage(others)[..]].concat();
+            Self::listing(device, name, &modules[usize::from(texels)](), &bindings)
+        };
+        let emitted = [GRID_INFO, GRID_ORDER, GRID_OFFSETS, GRID_KEYS, GRID_SLOTS];
         Ok(Self {
             device: Arc::clone(device),
             order: kernel(
                 "order_balls",
                 [spirv::order_balls, spirv::order_balls_texels],
-                &ordered,
+                GRID_POLYNOMIALS,
+                &[GRID_ORDER, GRID_BALLS],
             )?,
-            count: kernel("grid_count", [spirv::grid_count, spirv::grid_count_texels], &counted)?,
-            emit: kernel("grid_emit", [spirv::grid_emit, spirv::grid_emit_texels], &emitted)?,
+            count: kernel(
+                "grid_count",
+                [spirv::grid_count, spirv::grid_count_texels],
+                GRID_BALLS,
+                &[GRID_INFO, GRID_OFFSETS, GRID_LARGE],
+            )?,
+            emit: kernel(
+                "grid_emit",
+                [spirv::grid_emit, spirv::grid_emit_texels],
+                GRID_BALLS,
+                &emitted,
+            )?,
             emit_large: kernel(
                 "grid_emit_large",
                 [spirv::grid_emit_large, spirv::grid_emit_large_texels],
-                &large,
+                GRID_BALLS,
+                &[&emitted[..], &[GRID_LARGE]].concat(),
             )?,
-            ranges: kernel("grid_ranges", [spirv::grid_ranges, spirv::grid_ranges], &ranged)?,
+            ranges: Self::listing(
+                device,
+                "grid_ranges",
+                &spirv::grid_ranges(),
+                &storage(&[GRID_INFO, GRID_KEYS, GRID_CELLS]),
+            )?,
             offsets: Self::listing(
                 device,
                 "cell_offsets",
                 &spirv::cell_offsets(),
-                &[OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT].map(|at| (at, Binding::StorageBuffer)),
+                &storage(&[OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT]),
             )?,
-            list_points: Self::listing(
-                device,
+            list_points: kernel(
                 "list_points",
-                &if texels { spirv::list_points_texels() } else { spirv::list_points() },
-                &[
-                    (OFFSETS_SLOTS, Binding::StorageBuffer),
-                    (OFFSETS_POINTS, Binding::StorageBuffer),
-                    (
-                        OFFSETS_POLYNOMIALS,
-                        if texels {
-                            Binding::UniformTexelBuffer(Texel::Four)
-                        } else {
-                            Binding::StorageBuffer
-                        },
-                    ),
-                ],
+                [spirv::list_points, spirv::list_points_texels],
+                OFFSETS_POLYNOMIALS,
+                &[OFFSETS_SLOTS, OFFSETS_POINTS],
             )?,
             scan: Scan::new(device)?,
             sort: Sort::new(device)?,
