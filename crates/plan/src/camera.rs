@@ -2,6 +2,7 @@
 
 use glam::{DMat4, DVec3, DVec4};
 use kernels::layout::{CameraParams, NONE, ORTHOGRAPHIC, PERSPECTIVE};
+use rayon::prelude::*;
 use scene::{Camera, Projection, Up};
 
 /// Direction from the points to the eye, for +y up.
@@ -15,8 +16,8 @@ const FRAMING_FILL: f64 = 0.88;
 /// A point (x, y, z) along right, up and forward stays below the frustum's upper side for an eye at
 /// height c and distance D before the origin where y − c ≤ t (z + D), and likewise on the other
 /// sides; so the extremes of ±x − t z and ±y − t z give eye and distance in closed form.
-pub(crate) fn frame<'a>(
-    points: impl Iterator<Item = &'a [f64; 3]> + Clone,
+pub(crate) fn frame(
+    sets: &[Vec<[f64; 3]>],
     bounds: [[f64; 3]; 2],
     image_size: [u32; 2],
     up: Up,
@@ -34,17 +35,26 @@ pub(crate) fn frame<'a>(
     let half_tangent = FRAMING_FILL * (0.5 * FRAMING_FOV.to_radians()).tan();
     let aspect = f64::from(image_size[0]) / f64::from(image_size[1]);
     let tangents = [half_tangent * aspect, half_tangent];
-    let mut extremes = [[f64::NEG_INFINITY; 2]; 2]; // of +x, −x; of +y, −y
-    for &point in points.clone() {
-        let p = DVec3::from(point) - center;
-        let depth = p.dot(forward);
-        for (axis, at) in [p.dot(right), p.dot(above)].into_iter().enumerate() {
-            for (side, at) in [at, -at].into_iter().enumerate() {
-                let reach = at - tangents[axis] * depth;
-                extremes[axis][side] = extremes[axis][side].max(reach);
+    let parts: Vec<&[[f64; 3]]> = sets.iter().flat_map(|set| set.chunks(PART)).collect();
+    let none = [[f64::NEG_INFINITY; 2]; 2]; // of +x, −x; of +y, −y
+    let extremes_of = |part: &&[[f64; 3]]| {
+        let mut extremes = none;
+        for &point in *part {
+            let p = DVec3::from(point) - center;
+            let depth = p.dot(forward);
+            for (axis, at) in [p.dot(right), p.dot(above)].into_iter().enumerate() {
+                for (side, at) in [at, -at].into_iter().enumerate() {
+                    let reach = at - tangents[axis] * depth;
+                    extremes[axis][side] = extremes[axis][side].max(reach);
+                }
             }
         }
-    }
+        extremes
+    };
+    let joined = |a: [[f64; 2]; 2], b: [[f64; 2]; 2]| {
+        [0, 1].map(|axis| [0, 1].map(|side| a[axis][side].max(b[axis][side])))
+    };
+    let extremes = parts.par_iter().map(extremes_of).reduce(|| none, joined);
     let distance = (0..2)
         .map(|axis| (extremes[axis][0] + extremes[axis][1]) / (2.0 * tangents[axis]))
         .fold(0.0, f64::max);
@@ -55,10 +65,11 @@ pub(crate) fn frame<'a>(
     let distance = if distance > 0.0 { distance } else { 1.0 };
     let shift = [0, 1].map(|axis| {
         let side = [right, above][axis];
-        let from_center = |p: &[f64; 3]| DVec3::from(*p) - center;
-        let places =
-            points.clone().map(from_center).map(|p| (p.dot(side), p.dot(forward) + distance));
-        balance(places, shift[axis])
+        let place = |p: &[f64; 3]| {
+            let p = DVec3::from(*p) - center;
+            (p.dot(side), p.dot(forward) + distance)
+        };
+        balance(&parts, &place, shift[axis])
     });
     let target = center + shift[0] * right + shift[1] * above;
     let eye = target - distance * forward;
@@ -72,19 +83,33 @@ pub(crate) fn frame<'a>(
     }
 }
 
+/// Points that one thread takes at once.
+const PART: usize = 1 << 14;
+/// Reach and depth of no point.
+const NOWHERE: (f64, f64) = (f64::NEG_INFINITY, 1.0);
+
 /// The shift c at which the extremes of (at − c)/depth, in the picture, are equally far from its middle.
 ///
 /// Only the fuller direction is as full as it may be; along the other the eye could stand anywhere within
 /// a range. Newton's method: near its root the difference is linear in c, unless an extreme changes
 /// hands, and few steps see to that.
-fn balance(places: impl Iterator<Item = (f64, f64)> + Clone, start: f64) -> f64 {
+fn balance(
+    parts: &[&[[f64; 3]]],
+    place: &(dyn Fn(&[f64; 3]) -> (f64, f64) + Sync),
+    start: f64,
+) -> f64 {
     let mut shift = start;
     for _ in 0..6 {
         let extreme = |sign: f64| {
-            places.clone().fold((f64::NEG_INFINITY, 1.0), |best, (at, depth)| {
-                let reach = sign * (at - shift) / depth;
-                if reach > best.0 { (reach, depth) } else { best }
-            })
+            // The first of equals, whichever thread has it.
+            let better =
+                |best: (f64, f64), next: (f64, f64)| if next.0 > best.0 { next } else { best };
+            let of_part = |part: &&[[f64; 3]]| {
+                part.iter().map(place).fold(NOWHERE, |best, (at, depth)| {
+                    better(best, (sign * (at - shift) / depth, depth))
+                })
+            };
+            parts.par_iter().map(of_part).reduce(|| NOWHERE, better)
         };
         let (high, low) = (extreme(1.0), extreme(-1.0));
         shift += (high.0 - low.0) / (1.0 / high.1 + 1.0 / low.1);
@@ -237,7 +262,7 @@ mod tests {
             .map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { low[axis] } else { high[axis] }))
             .collect();
         for (up, size) in [(Up::Y, [640, 480]), (Up::Z, [640, 480]), (Up::MinusY, [100, 400])] {
-            let camera = frame(corners.iter(), [low, high], size, up);
+            let camera = frame(&[corners.to_vec()], [low, high], size, up);
             let view = View::new(&camera, size, [0.0; 3]);
             let inside: Vec<[f32; 2]> = corners
                 .iter()
@@ -266,7 +291,7 @@ mod tests {
     #[test]
     fn a_single_point_has_a_finite_view() {
         let point = [3.0; 3];
-        let camera = frame([point].iter(), [point, point], [64, 48], Up::Y);
+        let camera = frame(&[vec![point]], [point, point], [64, 48], Up::Y);
         assert!(camera.eye.iter().chain(&camera.target).all(|x| x.is_finite()));
         assert_ne!(camera.eye, camera.target);
     }

@@ -39,8 +39,10 @@ use kernels::layout::{
 };
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
 use points::{Cloud, CloudError, ObjectPoints, PointSet, bounds_of};
+use rayon::prelude::*;
 use scene::{Fresnel, Light, Object, Scene, Up};
 pub use scene::{Primary, RayLoop, Secondary};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Columns of a tile at most: a row of the ray state's images.
@@ -149,17 +151,24 @@ impl Plan {
         let (sets, isolated) = drop_isolated(scene, sets)?;
         let image_size = scene.image.size;
         let window = checked_crop(crop, image_size)?;
-        let world = in_world(scene, &sets);
+        let world: Vec<_> =
+            scene.objects.iter().zip(&sets).map(|(object, set)| placed(object, set)).collect();
         let surface_sets: Vec<Arc<PointSet>> = (scene.objects.iter().zip(&sets))
             .map(|(object, set)| volumes::surface_points(object, set))
             .collect::<Result<_, _>>()?;
-        let surface_world = in_world(scene, &surface_sets);
+        let surface_world: Vec<Cow<'_, [[f64; 3]]>> = (scene.objects.iter())
+            .zip(world.iter().zip(sets.iter().zip(&surface_sets)))
+            .map(|(object, (all, (set, surface)))| match Arc::ptr_eq(set, surface) {
+                true => Cow::Borrowed(&all[..]),
+                false => Cow::Owned(placed(object, surface)),
+            })
+            .collect();
         let object_points: Vec<ObjectPoints<'_>> = surface_world
             .iter()
             .zip(&surface_sets)
             .map(|(positions, set)| ObjectPoints { positions, file_index: &set.file_index })
             .collect();
-        let bounds = bounds_of(world.iter().flatten()).ok_or(CloudError::Empty)?;
+        let bounds = bounds_of(world.iter().map(Vec::as_slice)).ok_or(CloudError::Empty)?;
         let cloud = Cloud::within(bounds, &object_points)?;
         let volumes = volumes::plan_volumes(scene, &sets, &world, &cloud)?;
         let fits = scene
@@ -178,9 +187,8 @@ impl Plan {
             }
             None => NONE,
         };
-        let camera = scene
-            .camera
-            .unwrap_or_else(|| camera::frame(world.iter().flatten(), cloud.bounds, image_size, up));
+        let camera =
+            scene.camera.unwrap_or_else(|| camera::frame(&world, cloud.bounds, image_size, up));
         let view = View::new(&camera, image_size, cloud.origin);
         let lights = scene.lights.iter().map(|light| local_light(light, cloud.origin)).collect();
         let framed = Scene { camera: Some(camera), ..scene.clone() };
@@ -388,12 +396,10 @@ pub fn checked_crop(crop: Option<Window>, image: [u32; 2]) -> Result<Window, Pla
     if inside { Ok(crop) } else { Err(PlanError::Crop { crop, image }) }
 }
 
-/// The points of each object in the world.
-fn in_world(scene: &Scene, sets: &[Arc<PointSet>]) -> Vec<Vec<[f64; 3]>> {
-    let placed = |(object, set): (&Object, &Arc<PointSet>)| {
-        set.positions.iter().map(|&p| object.transform.apply(p)).collect()
-    };
-    scene.objects.iter().zip(sets).map(placed).collect()
+/// The points of an object in the world.
+fn placed(object: &Object, set: &PointSet) -> Vec<[f64; 3]> {
+    let positions = set.positions.par_iter().with_min_len(1 << 14);
+    positions.map(|&p| object.transform.apply(p)).collect()
 }
 
 /// The sets without the points that their objects drop, and how many those are.

@@ -92,7 +92,7 @@ impl Cloud {
     /// # Errors
     /// Too many points, none, or points farther apart than f32 bears.
     pub fn new(objects: &[ObjectPoints<'_>]) -> Result<Self, CloudError> {
-        let all = objects.iter().flat_map(|object| object.positions);
+        let all = objects.iter().map(|object| object.positions);
         let bounds = bounds_of(all).ok_or(CloudError::Empty)?;
         Self::within(bounds, objects)
     }
@@ -125,16 +125,20 @@ impl Cloud {
         let first = self.points.len();
         let farthest = object
             .positions
-            .iter()
-            .flat_map(|p| [0, 1, 2].map(|axis| (p[axis] - self.origin[axis]).abs()))
-            .fold(0.0, f64::max);
+            .par_chunks(PART)
+            .map(|part| {
+                let away = |p: &[f64; 3]| [0, 1, 2].map(|axis| (p[axis] - self.origin[axis]).abs());
+                part.iter().flat_map(away).fold(0.0, f64::max)
+            })
+            .reduce(|| 0.0, f64::max);
         if farthest > FARTHEST {
             return Err(CloudError::TooFar { object: index, farthest });
         }
         let local: Vec<Point> = object
             .positions
-            .iter()
+            .par_iter()
             .zip(object.file_index)
+            .with_min_len(PART)
             .map(|(p, &index)| Point {
                 position: [0, 1, 2].map(|axis| (p[axis] - self.origin[axis]) as f32),
                 index,
@@ -142,8 +146,9 @@ impl Cloud {
             .collect();
         let mut places: Vec<(u64, u32)> = (0..local.len() as u32).map(|i| (0, i)).collect();
         sort_along_curve(&local, &mut places);
+        let in_order = places.par_iter().with_min_len(PART);
+        self.points.par_extend(in_order.map(|&(_, i)| local[i as usize]));
         for (slot, &(_, i)) in places.iter().enumerate() {
-            self.points.push(local[i as usize]);
             self.order[first + i as usize] = (first + slot) as u32;
         }
         self.objects.push(SlotRange { first_slot: first as u32, count: local.len() as u32 });
@@ -167,17 +172,21 @@ fn middle(low: f64, high: f64) -> f64 {
     0.5 * low + 0.5 * high
 }
 
-/// Lowest and highest coordinate along each axis; `None` without points.
+/// Points that one thread takes at once.
+const PART: usize = 1 << 14;
+
+/// Lowest and highest coordinate of the points of all sets along each axis; `None` without points.
 #[must_use]
-pub fn bounds_of<'a>(points: impl IntoIterator<Item = &'a [f64; 3]>) -> Option<[[f64; 3]; 2]> {
-    let mut all = points.into_iter();
-    let &first = all.next()?;
-    Some(all.fold([first, first], |[low, high], p| {
+pub fn bounds_of<'a>(sets: impl IntoIterator<Item = &'a [[f64; 3]]>) -> Option<[[f64; 3]; 2]> {
+    let joined = |[low, high]: [[f64; 3]; 2], [low_too, high_too]: [[f64; 3]; 2]| {
         [
-            [0, 1, 2].map(|axis| low[axis].min(p[axis])),
-            [0, 1, 2].map(|axis| high[axis].max(p[axis])),
+            [0, 1, 2].map(|axis| low[axis].min(low_too[axis])),
+            [0, 1, 2].map(|axis| high[axis].max(high_too[axis])),
         ]
-    }))
+    };
+    let of_part = |part: &[[f64; 3]]| part.iter().map(|&p| [p, p]).reduce(joined);
+    let of_set = |set: &[[f64; 3]]| set.par_chunks(PART).filter_map(of_part).reduce_with(joined);
+    sets.into_iter().filter_map(of_set).reduce(joined)
 }
 
 /// Sorts places in `points` along a Hilbert curve through the cube around them, and those that it does not

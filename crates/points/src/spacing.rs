@@ -62,7 +62,7 @@ fn median(mut distances: Vec<f64>) -> Option<f64> {
 
 /// `None` where the median is not under the narrowest margin.
 fn by_slabs(positions: &[[f64; 3]], at_once: usize) -> Option<f64> {
-    let [low, high] = crate::bounds_of(positions)?;
+    let [low, high] = crate::bounds_of([positions])?;
     let extent = |axis: &usize| high[*axis] - low[*axis];
     let axis = (0..3).max_by(|a, b| extent(a).total_cmp(&extent(b)))?;
     let scale = PARTS as f64 / extent(&axis);
