@@ -124,7 +124,7 @@ constants! {
     GRID_OFFSETS = 3;
     /// Binding of the grid build: the cell of each pair.
     GRID_KEYS = 4;
-    /// Binding of the grid build: the leaf of each pair, and which of its points.
+    /// Binding of the grid build: the slot of each pair.
     GRID_SLOTS = 5;
     /// Binding of the grid build: first and past-the-last pair of each cell.
     GRID_CELLS = 6;

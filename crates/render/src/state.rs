@@ -10,7 +10,7 @@ pub enum RayLoop {
     /// In four images that are read and four that are written: every pass carries every ray on (\[T\] §5).
     Images,
     /// In a buffer, in place: a pass writes of a ray what it changes, and a ray that is done costs nothing.
-    /// Kernels read rays, polynomials and the grid's lists through uniform texel buffers then.
+    /// Kernels read rays, polynomials, the grid's lists and volumes through uniform texel buffers then.
     Queue,
 }
 

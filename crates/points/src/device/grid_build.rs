@@ -41,7 +41,7 @@ const SLAB_PAIRS_PER_POINT: u64 = 3;
 const MOST_SLAB_PAIRS: u64 = 32_000_000;
 /// What a pair takes while it is sorted, and a point while its pairs are: bytes.
 const SORTED_PAIR_BYTES: u64 = 24;
-const LISTED_POINT_BYTES: u64 = 28;
+pub(crate) const LISTED_POINT_BYTES: u64 = 28;
 
 /// Pairs that a build sorts in one go, at most, with so many bytes of the device's memory left.
 pub(crate) fn slab_pairs(points: u64, left: u64) -> u32 {

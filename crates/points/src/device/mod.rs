@@ -23,8 +23,8 @@ pub use tree::Tree;
 use crate::{Cloud, Grids, Watch, plan_grids};
 use fitting::{Fitted, fit_all};
 use gpu::{Buffer, Device, GpuError};
-use grid_build::{GridBuild, GridBuildIo, slab_pairs};
-use kernels::layout::{FitOutcome, FitParams, GridLevel, LINE_ROW, Polynomial};
+use grid_build::{GridBuild, GridBuildIo, LISTED_POINT_BYTES, slab_pairs};
+use kernels::layout::{FitOutcome, FitParams, GridLevel, LINE_ROW, Point, Polynomial};
 use std::sync::Arc;
 use work::Work;
 
@@ -117,15 +117,21 @@ impl Memory {
     /// entries of its list a point.
     fn kept(self) -> u64 {
         let tree = if self.needed.tree { TREE_BYTES_PER_POINT } else { 0 };
-        let lists = if self.needed.lists || !self.needed.tree { 16 } else { 0 };
+        let lists = if self.has_lists() { 16 } else { 0 };
         let refinement =
             if self.needed.point_cells { size_of::<FitOutcome>() as u64 + 16 } else { 0 };
         self.points * (size_of::<Polynomial>() as u64 + tree + lists + refinement)
     }
 
-    /// Beside that, while fitting, the points; while the grid is built, their order and their pairs.
+    fn has_lists(self) -> bool {
+        self.needed.lists || !self.needed.tree
+    }
+
+    /// Beside that, while fitting, the points; while the grid is built, their balls and what else it lists them by.
     fn peak(self) -> u64 {
-        self.kept() + self.points * 16
+        let building =
+            if self.has_lists() { LISTED_POINT_BYTES } else { size_of::<Point>() as u64 };
+        self.kept() + self.points * building
     }
 
     fn require(self, heap: u64) -> Result<(), BuildError> {
