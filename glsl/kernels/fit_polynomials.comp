@@ -49,15 +49,16 @@ vec3 neighbor_offset(uint list, uint j, vec3 center) {
     return position_of(neighbor(list, j)) - center;
 }
 
-// Positions that differ, counted up to 6: the first is the point's.
+// Positions that differ, counted up to 6: the first is the point's, and what the others are until they are found.
 struct Distinct {
     uint count;
     vec3 first, second, third, fourth, fifth;
 };
 
 void count_position(inout Distinct seen, vec3 p) {
-    bool known = p == seen.first || (seen.count > 1u && p == seen.second) || (seen.count > 2u && p == seen.third)
-        || (seen.count > 3u && p == seen.fourth) || (seen.count > 4u && p == seen.fifth) || seen.count > 5u;
+    bool is_first = p == seen.first, is_second = p == seen.second, is_third = p == seen.third;
+    bool is_fourth = p == seen.fourth, is_fifth = p == seen.fifth;
+    bool known = is_first || is_second || is_third || is_fourth || is_fifth || seen.count > 5u;
     seen.second = !known && seen.count == 1u ? p : seen.second;
     seen.third = !known && seen.count == 2u ? p : seen.third;
     seen.fourth = !known && seen.count == 3u ? p : seen.fourth;
@@ -173,29 +174,21 @@ void main() {
     float openness = 0.0;
     bool finds_rims = params.rim_limit > 0.0;
     if ((params.close_gaps != 0u || finds_rims) && kind != FIT_NO_SURFACE) {
-        vec4 e0 = vec4(UNBOUNDED), e1 = e0, e2 = e0, e3 = e0, e4 = e0, e5 = e0;
+        float square = 0.0, extent = 0.0;
+        for (int group = 0; group < GAP_GROUPS; ++group) {
+            vec4 cosines = GAP_COSINES[group], sines = GAP_SINES[group];
+            Extents extents = Extents(vec4(UNBOUNDED), vec4(UNBOUNDED));
 #define STEP \
     vec2 q = vec2(dot3(y, u), dot3(y, v)); \
-    float half_square = 0.5 * (q.x * q.x + q.y * q.y); \
-    e0 = narrow(e0, GAP_COSINES[0], GAP_SINES[0], q, half_square); \
-    e1 = narrow(e1, GAP_COSINES[1], GAP_SINES[1], q, half_square); \
-    e2 = narrow(e2, GAP_COSINES[2], GAP_SINES[2], q, half_square); \
-    e3 = narrow(e3, GAP_COSINES[3], GAP_SINES[3], q, half_square); \
-    e4 = narrow(e4, GAP_COSINES[4], GAP_SINES[4], q, half_square); \
-    e5 = narrow(e5, GAP_COSINES[5], GAP_SINES[5], q, half_square);
-        EACH_NEIGHBOR
+    narrow(extents, cosines, sines, q, 0.5 * (q.x * q.x + q.y * q.y));
+            EACH_NEIGHBOR
 #undef STEP
-        float f0 = extent_of_cell(e0, GAP_COSINES[0], GAP_SINES[0], c);
-        float f1 = extent_of_cell(e1, GAP_COSINES[1], GAP_SINES[1], c);
-        float f2 = extent_of_cell(e2, GAP_COSINES[2], GAP_SINES[2], c);
-        float f3 = extent_of_cell(e3, GAP_COSINES[3], GAP_SINES[3], c);
-        float f4 = extent_of_cell(e4, GAP_COSINES[4], GAP_SINES[4], c);
-        float f5 = extent_of_cell(e5, GAP_COSINES[5], GAP_SINES[5], c);
-        bool closed = bounded(e0) && bounded(e1) && bounded(e2) && bounded(e3) && bounded(e4) && bounded(e5);
-        float square = max(max(max(f0, f1), max(f2, f3)), max(f4, f5));
+            square = larger(square, larger(extent_of_cell(extents.ahead, cosines, sines, c),
+                                           extent_of_cell(extents.behind, -cosines, -sines, c)));
+            extent = larger(extent, larger(farthest_of(extents.ahead), farthest_of(extents.behind)));
+        }
+        bool closed = extent <= 1.0;
         reach_needed = closed && params.close_gaps != 0u ? GAP_MARGIN * sqrt(square) : 0.0;
-        float extent = max(max(max(farthest_of(e0), farthest_of(e1)), max(farthest_of(e2), farthest_of(e3))),
-                           max(farthest_of(e4), farthest_of(e5)));
         openness = extent * (h / reach);
     }
     float ratio = max(params.trust, min(reach_needed, 1.0));

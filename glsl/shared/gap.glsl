@@ -8,30 +8,30 @@
 #ifndef GAP_GLSL
 #define GAP_GLSL
 
-#define GAP_GROUPS 6
+#define GAP_GROUPS 3     // of four directions, and the opposite of each
 #define UNBOUNDED 1e6    // farther than any bisector that matters, in units of h
 #define GAP_MARGIN 1.15  // for what lies between two sampled directions
 
 const vec4 GAP_COSINES[GAP_GROUPS] = vec4[GAP_GROUPS](
     vec4(1.000000000, 0.965925826, 0.866025404, 0.707106781),
     vec4(0.500000000, 0.258819045, 0.0, -0.258819045),
-    vec4(-0.500000000, -0.707106781, -0.866025404, -0.965925826),
-    vec4(-1.000000000, -0.965925826, -0.866025404, -0.707106781),
-    vec4(-0.500000000, -0.258819045, 0.0, 0.258819045),
-    vec4(0.500000000, 0.707106781, 0.866025404, 0.965925826));
+    vec4(-0.500000000, -0.707106781, -0.866025404, -0.965925826));
 const vec4 GAP_SINES[GAP_GROUPS] = vec4[GAP_GROUPS](
     vec4(0.0, 0.258819045, 0.500000000, 0.707106781),
     vec4(0.866025404, 0.965925826, 1.000000000, 0.965925826),
-    vec4(0.866025404, 0.707106781, 0.500000000, 0.258819045),
-    vec4(0.0, -0.258819045, -0.500000000, -0.707106781),
-    vec4(-0.866025404, -0.965925826, -1.000000000, -0.965925826),
-    vec4(-0.866025404, -0.707106781, -0.500000000, -0.258819045));
+    vec4(0.866025404, 0.707106781, 0.500000000, 0.258819045));
 
-// Narrows the cell's extent in four directions by the bisector with the neighbour at q, |q| > 0.
-vec4 narrow(vec4 extent, vec4 cosines, vec4 sines, vec2 q, float half_square) {
+// How far the cell reaches in the directions of a group, and in the opposite ones.
+struct Extents {
+    vec4 ahead, behind;
+};
+
+// Narrows them by the bisector with the neighbour at q, |q| > 0: it is ahead or behind.
+void narrow(inout Extents extents, vec4 cosines, vec4 sines, vec2 q, float half_square) {
     vec4 along = q.x * cosines + q.y * sines;
-    vec4 bisector = half_square / larger(along, vec4(1e-6));
-    return smaller(extent, mix(vec4(UNBOUNDED), bisector, greaterThan(along, vec4(1e-6))));
+    vec4 bisector = half_square / larger(abs(along), vec4(1e-6));
+    extents.ahead = mix(extents.ahead, smaller(extents.ahead, bisector), greaterThan(along, vec4(1e-6)));
+    extents.behind = mix(extents.behind, smaller(extents.behind, bisector), lessThan(along, vec4(-1e-6)));
 }
 
 // Squared distance to the farthest point of the surface g = A x2 + B y2 + C xy + E x + F y + D over the
@@ -45,9 +45,5 @@ float extent_of_cell(vec4 extent, vec4 cosines, vec4 sines, float c[6]) {
 
 float farthest_of(vec4 extent) {
     return larger(larger(extent.x, extent.y), larger(extent.z, extent.w));
-}
-
-bool bounded(vec4 extent) {
-    return farthest_of(extent) <= 1.0;
 }
 #endif

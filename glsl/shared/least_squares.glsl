@@ -38,10 +38,6 @@ void add_sample(inout NormalEquations eq, float x, float y, float f, float weigh
     eq.right[5] += weight * f;
 }
 
-bool has_coefficient(uint kind, int i) {
-    return kind == FIT_FULL || i == 5 || (kind == FIT_INCOMPLETE && i < 3);
-}
-
 // Entry of a lower triangle that is kept row by row.
 #define AT(i, j) ((i) * ((i) + 1) / 2 + (j))
 #define L(i, j) lower[AT(i, j)]
@@ -54,22 +50,28 @@ bool has_coefficient(uint kind, int i) {
 #define LEFT_4(i, j) (LEFT_3(i, j) - L(i, 3) * L(j, 3) * pivot[3])
 #define LEFT_5(i, j) (LEFT_4(i, j) - L(i, 4) * L(j, 4) * pivot[4])
 
+// Which coefficients a kind of polynomial has.
+#define HAS_0 is_curved
+#define HAS_1 is_curved
+#define HAS_2 is_curved
+#define HAS_3 is_full
+#define HAS_4 is_full
+#define HAS_5 true
+
 #define PIVOT(j, LEFT) { \
     float d = LEFT(j, j); \
-    bool good = d > SINGULAR_PIVOT * eq.matrix[AT(j, j)]; \
-    bool used = has_coefficient(kind, j); \
-    regular = regular && (good || !used); \
-    pivot[j] = used && good ? d : 1.0; \
+    bool good = d > SINGULAR_PIVOT * eq.matrix[AT(j, j)], has = HAS_##j; \
+    regular = regular && (good || !has); \
+    pivot[j] = has && good ? d : 1.0; \
 }
-#define BELOW(i, j, LEFT) \
-    L(i, j) = has_coefficient(kind, j) && has_coefficient(kind, i) ? LEFT(i, j) / pivot[j] : 0.0;
+#define BELOW(i, j, LEFT) L(i, j) = HAS_##j && HAS_##i ? LEFT(i, j) / pivot[j] : 0.0;
 
 // Solves for the coefficients of one kind of polynomial; false where a pivot is singular. Written
 // out: an array that is indexed by a loop lives in memory, one element a lane.
 bool solve(NormalEquations eq, uint kind, out float solution[6]) {
     float lower[21];
     float pivot[6];
-    bool regular = true;
+    bool regular = true, is_full = kind == FIT_FULL, is_curved = is_full || kind == FIT_INCOMPLETE;
     PIVOT(0, LEFT_0)
     BELOW(1, 0, LEFT_0) BELOW(2, 0, LEFT_0) BELOW(3, 0, LEFT_0) BELOW(4, 0, LEFT_0) BELOW(5, 0, LEFT_0)
     PIVOT(1, LEFT_1)
@@ -83,11 +85,11 @@ bool solve(NormalEquations eq, uint kind, out float solution[6]) {
     PIVOT(5, LEFT_5)
 
     float z[6];
-    z[0] = has_coefficient(kind, 0) ? eq.right[0] : 0.0;
-    z[1] = has_coefficient(kind, 1) ? eq.right[1] : 0.0;
-    z[2] = has_coefficient(kind, 2) ? eq.right[2] : 0.0;
-    z[3] = has_coefficient(kind, 3) ? eq.right[3] : 0.0;
-    z[4] = has_coefficient(kind, 4) ? eq.right[4] : 0.0;
+    z[0] = is_curved ? eq.right[0] : 0.0;
+    z[1] = is_curved ? eq.right[1] : 0.0;
+    z[2] = is_curved ? eq.right[2] : 0.0;
+    z[3] = is_full ? eq.right[3] : 0.0;
+    z[4] = is_full ? eq.right[4] : 0.0;
     z[5] = eq.right[5];
     z[1] = z[1] - L(1, 0) * z[0];
     z[2] = z[2] - L(2, 0) * z[0] - L(2, 1) * z[1];
