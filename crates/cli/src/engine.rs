@@ -34,7 +34,7 @@ pub struct Built {
     surfaces: BuiltOn,
     /// How long that took.
     pub duration: Duration,
-    /// What of it the driver took to make pipelines; zero on the CPU.
+    /// What of it was waiting for the driver to make pipelines; zero on the CPU.
     pub pipelines: Duration,
 }
 
@@ -58,7 +58,7 @@ pub struct Frame {
     pub passes: u32,
     /// From submission to completion of all passes.
     pub trace: Duration,
-    /// What the driver took to make pipelines that were new; not in `trace`.
+    /// What it waited for pipelines that were new; not in `trace`.
     pub pipelines: Duration,
     /// All of it with the picture read back.
     pub wall: Duration,

@@ -29,8 +29,7 @@ pub fn install() -> Result<(), Failure> {
         } else if HELD.load(Ordering::SeqCst) > 0 {
             return;
         }
-        film::remove_unfinished();
-        std::process::exit(i32::from(Exit::Interrupted.code()));
+        end();
     })
     .map_err(|error| Failure::exhausted(format!("cannot handle interruptions: {error}")))
 }
@@ -45,6 +44,23 @@ pub fn held<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> 
     let _held = Counted::new(&HELD);
     let result = work()?;
     if requested() { Err(Failure::interrupted()) } else { Ok(result) }
+}
+
+/// Runs short work of a thread beside the one that does what the user asked for: it is not cut off, and ends the process
+/// where an end was asked for meanwhile and no other work will see to it.
+pub fn beside<T>(work: impl FnOnce() -> T) -> T {
+    let held = Counted::new(&HELD);
+    let result = work();
+    drop(held);
+    if requested() && HELD.load(Ordering::SeqCst) == 0 {
+        end();
+    }
+    result
+}
+
+fn end() -> ! {
+    film::remove_unfinished();
+    std::process::exit(i32::from(Exit::Interrupted.code()))
 }
 
 /// Runs work that writes a file.

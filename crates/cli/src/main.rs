@@ -5,6 +5,7 @@
 //! stdout or stderr, but for the bars of [`progress`].
 #![forbid(unsafe_code)]
 
+mod ahead;
 mod args;
 mod bench;
 mod commands;

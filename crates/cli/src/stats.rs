@@ -34,7 +34,7 @@ pub struct Row {
     pub build_kernels: BTreeMap<&'static str, f64>,
     /// Points whose neighbours the device left to the CPU, since its search is bounded.
     pub searched_on_cpu: u64,
-    /// What of the first build and frame the driver took to make pipelines; not in `trace_ms`.
+    /// What the first build and frame waited for the driver to make pipelines; not in `trace_ms`.
     pub pipelines_ms: f64,
     /// The frame before those that are timed, with what the driver compiles at a first dispatch.
     pub warm_up_ms: Option<f64>,

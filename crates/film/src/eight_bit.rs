@@ -9,6 +9,7 @@ use crate::srgb::{srgb_byte, unit_byte};
 use crate::tone::Tone;
 use image::ExtendedColorType;
 use image::codecs::jpeg::JpegEncoder;
+use rayon::prelude::*;
 use std::path::Path;
 
 const JPEG_QUALITY: u8 = 95;
@@ -17,9 +18,11 @@ const JPEG_QUALITY: u8 = 95;
 pub(crate) fn png(film: &Film, tone: Tone, path: &Path) -> Result<Vec<u8>, FilmError> {
     let Window { width, height, .. } = film.window;
     let (color, pixels): (_, Vec<u8>) = if film.transparent {
-        let straight =
-            (0..film.color.len()).flat_map(|at| straight_rgba(with_one_alpha(film, at), tone));
-        (png::ColorType::Rgba, straight.collect())
+        let straight = |at| straight_rgba(with_one_alpha(film, at), tone);
+        (
+            png::ColorType::Rgba,
+            (0..film.color.len()).into_par_iter().flat_map_iter(straight).collect(),
+        )
     } else {
         (png::ColorType::Rgb, opaque(film, tone))
     };
@@ -61,7 +64,7 @@ pub(crate) fn jpeg(film: &Film, tone: Tone, path: &Path) -> Result<Vec<u8>, Film
 /// The colours without alpha. A premultiplied colour over black is the colour itself.
 fn opaque(film: &Film, tone: Tone) -> Vec<u8> {
     let shown = |c: f32| srgb_byte(tone.apply(c));
-    film.color.iter().flat_map(|&[r, g, b, _]| [r, g, b].map(shown)).collect()
+    film.color.par_iter().flat_map_iter(|&[r, g, b, _]| [r, g, b].map(shown)).collect()
 }
 
 /// A pixel with the one alpha that PNG has room for: the mean where the channels have their own.

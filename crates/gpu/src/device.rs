@@ -53,9 +53,9 @@ pub struct Device {
     info: DeviceInfo,
     limits: Limits,
     debug: Option<ext::debug_utils::Device>,
-    /// Nanoseconds that the driver took to make pipelines.
+    /// Nanoseconds that passes waited for pipelines.
     pipeline_nanos: AtomicU64,
-    pipelines: Mutex<Pipelines>,
+    pub(crate) pipelines: Pipelines,
     queue: Mutex<Queue>,
     /// `None` only while the device is being made or dropped.
     allocator: Mutex<Option<Allocator>>,
@@ -114,7 +114,7 @@ impl Device {
             info,
             debug,
             pipeline_nanos: AtomicU64::new(0),
-            pipelines: Mutex::default(),
+            pipelines: Pipelines::default(),
             queue: Mutex::new(Queue::new(queue)),
             allocator: Mutex::new(None),
             instance: Arc::clone(instance),
@@ -150,10 +150,15 @@ impl Device {
         &self.limits
     }
 
-    /// How long the driver has taken to make pipelines since the device was opened. Some drivers compile
-    /// at the first dispatch, which is not in it.
+    /// How long passes have waited for the driver to make their pipelines since the device was opened. What was
+    /// [made ahead](crate::Kernel::make_ahead) is not in it, nor what some drivers compile at the first dispatch.
     pub fn pipeline_time(&self) -> Duration {
         Duration::from_nanos(self.pipeline_nanos.load(Ordering::Relaxed))
+    }
+
+    /// How many pipelines it has been asked for.
+    pub fn pipeline_count(&self) -> usize {
+        self.pipelines.count()
     }
 
     /// Adds to [`pipeline_time`](Self::pipeline_time).
@@ -172,11 +177,6 @@ impl Device {
     pub(crate) fn queue(&self) -> MutexGuard<'_, Queue> {
         // `Queue` waits in every path, so it is idle whenever a panic lets go of the lock.
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Its pipelines, locked.
-    pub(crate) fn pipelines(&self) -> MutexGuard<'_, Pipelines> {
-        self.pipelines.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn allocator(&self) -> MutexGuard<'_, Option<Allocator>> {
@@ -264,7 +264,7 @@ impl Drop for Device {
         let staging = queue.destroy(&self.raw);
         drop(queue);
         self.free(staging);
-        self.pipelines().destroy(&self.raw);
+        self.pipelines.destroy(&self.raw);
         // The allocator gives its memory back to the device, so it goes first.
         drop(self.allocator().take());
         // SAFETY: every object of this crate holds an `Arc` of its device, so all are destroyed;

@@ -12,6 +12,7 @@ use crate::spirv::{Module, ResourceKind};
 use ash::vk;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
+use std::time::Instant;
 
 /// What a kernel expects at a binding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -149,6 +150,16 @@ impl Kernel {
         self.inner.group_size
     }
 
+    /// Makes its pipeline, if there is none yet, so that no pass has to wait for it. Meant for another thread than
+    /// the one that records passes: they may work on different pipelines at once.
+    ///
+    /// # Errors
+    /// A driver that rejects the pipeline. A pass that uses it will say so too.
+    pub fn make_ahead(&self) -> Result<(), GpuError> {
+        let KernelInner { device, key, .. } = &*self.inner;
+        device.pipelines.get(device, key).map(|_| ())
+    }
+
     /// Its name in messages.
     pub fn name(&self) -> &'static str {
         self.inner.name
@@ -176,7 +187,9 @@ impl KernelInner {
         if let Some(pipeline) = self.pipeline.get() {
             return Ok(*pipeline);
         }
-        let made = self.device.pipelines().get(&self.device, &self.key)?;
+        let asked = Instant::now();
+        let made = self.device.pipelines.get(&self.device, &self.key)?;
+        self.device.add_pipeline_time(asked.elapsed());
         Ok(*self.pipeline.get_or_init(|| made))
     }
 }

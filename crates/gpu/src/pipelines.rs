@@ -1,5 +1,5 @@
-//! Pipelines: made when a pass first needs one, and kept as long as their device, so that no kernel is
-//! compiled that nothing runs, and none twice.
+//! Pipelines: made when a pass first needs one, or ahead of that on another thread, and kept as long as their
+//! device, so that no kernel is compiled that nothing asked for, and none twice.
 
 use crate::device::Device;
 use crate::error::GpuError;
@@ -7,14 +7,16 @@ use crate::kernel::Binding;
 use ash::vk;
 use std::collections::HashMap;
 use std::ffi::CString;
-use std::sync::Arc;
-use std::time::Instant;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// All pipelines of a device.
 #[derive(Default)]
 pub(crate) struct Pipelines {
-    made: HashMap<Arc<PipelineKey>, Pipeline>,
+    made: Mutex<HashMap<Arc<PipelineKey>, Made>>,
 }
+
+/// A pipeline, once it is made; whoever makes it holds the lock.
+type Made = Arc<Mutex<Option<Pipeline>>>;
 
 /// What a pipeline is made from.
 #[derive(Debug, PartialEq, Eq, Hash)]
@@ -37,32 +39,45 @@ pub(crate) struct Pipeline {
 }
 
 impl Pipelines {
-    /// The pipeline of this key, made if it is the first time. `device` is the one that these are of.
+    /// The pipeline of this key, made if it is the first time; waited for, if another thread is making it. Threads
+    /// that ask for different ones do not wait for each other. `device` is the one that these are of.
     pub(crate) fn get(
-        &mut self,
+        &self,
         device: &Device,
         key: &Arc<PipelineKey>,
     ) -> Result<Pipeline, GpuError> {
-        if let Some(made) = self.made.get(key) {
-            return Ok(*made);
+        let of_key = Arc::clone(locked(&self.made).entry(Arc::clone(key)).or_default());
+        let mut made = locked(&of_key);
+        if let Some(pipeline) = *made {
+            return Ok(pipeline);
         }
-        let started = Instant::now();
         let mut pipeline = Pipeline::default();
         if let Err(error) = pipeline.create(device, key) {
             pipeline.destroy(&device.raw);
             return Err(error);
         }
-        device.add_pipeline_time(started.elapsed());
-        self.made.insert(Arc::clone(key), pipeline);
+        *made = Some(pipeline);
         Ok(pipeline)
     }
 
+    /// How many were asked for.
+    pub(crate) fn count(&self) -> usize {
+        locked(&self.made).len()
+    }
+
     /// Destroys all of them. No pending work may use one, and none may be used again.
-    pub(crate) fn destroy(&mut self, raw: &ash::Device) {
-        for (_, pipeline) in self.made.drain() {
-            pipeline.destroy(raw);
+    pub(crate) fn destroy(&self, raw: &ash::Device) {
+        for (_, made) in locked(&self.made).drain() {
+            if let Some(pipeline) = locked(&made).take() {
+                pipeline.destroy(raw);
+            }
         }
     }
+}
+
+/// A lock that no panic leaves in a bad state.
+fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
+    lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Pipeline {

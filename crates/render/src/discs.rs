@@ -5,7 +5,7 @@
 
 use crate::passes::{DiscCount, DiscEmit, DiscRanges};
 use crate::state::RayLoop;
-use gpu::{Buffer, Device, GpuError, Recorder, Timings};
+use gpu::{Buffer, Device, GpuError, Kernel, Recorder, Timings};
 use kernels::layout::{DepthRanks, DiscParams, LEAF_POINTS};
 use plan::{MAX_DISC_PAIRS, Plan, Window, screen_tiles};
 use points::device::{Pairs, Scan, Sort, SortSpace, Surfaces};
@@ -67,6 +67,15 @@ impl Discs {
             levels: Scan::levels(device, leaves + 1)?,
             lists: None,
         })
+    }
+
+    /// What it takes to bin discs.
+    pub fn kernels(device: &Arc<Device>, form: RayLoop) -> Result<Vec<Kernel>, GpuError> {
+        let (count, emit) = (DiscCount::new(device, form)?, DiscEmit::new(device, form)?);
+        let ranges = DiscRanges::new(device)?;
+        let own = [count.kernel, emit.kernel, ranges.kernel];
+        let (scan, sort) = (Scan::new(device)?.kernels(), Sort::new(device)?.kernels());
+        Ok([&own[..], &scan, &sort].concat())
     }
 
     /// What [`Discs::bin`] made last.

@@ -5,6 +5,7 @@
 //! are the rays from its diffuse hits towards each light. Between waves the rays that go on are moved
 //! together, so that those that ended cost nothing.
 
+mod ahead;
 mod first_wave;
 mod in_volumes;
 mod to_the_end;
@@ -51,7 +52,7 @@ const EMPTY_PIXEL: FilmPixel = FilmPixel {
 pub struct FrameStats {
     /// From submission to completion of all passes, shading included; without what `pipelines` took.
     pub trace: Duration,
-    /// What the driver took to make pipelines that no frame or build of this device had used before.
+    /// What passes waited for pipelines that were not made yet.
     pub pipelines: Duration,
     /// Dispatches of the traversal.
     pub passes: u32,
@@ -153,12 +154,18 @@ struct Passes {
 }
 
 impl Passes {
-    fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, RenderError> {
+    /// `skips`: `SCENE_SKIPS` or none, which `grid_trace` alone asks for.
+    fn new(
+        device: &Arc<Device>,
+        form: RayLoop,
+        scene: u32,
+        skips: u32,
+    ) -> Result<Self, RenderError> {
         Ok(Self {
             camera_rays: CameraRays::new(device, form)?,
             camera_trace: CameraTrace::new(device, scene)?,
             disc_trace: DiscTrace::new(device, form)?,
-            grid_trace: GridTrace::new(device, form, scene)?,
+            grid_trace: GridTrace::new(device, form, scene | skips)?,
             tree_trace: TreeTrace::new(device, scene)?,
             surface_hit: SurfaceHit::new(device, form, scene)?,
             refine: Refine::new(device, form)?,
@@ -221,9 +228,8 @@ impl Renderer {
     /// # Errors
     /// A device without the memory, a buffer over its limits, a lost device, an interruption.
     pub fn new(device: &Arc<Device>, plan: &Plan, watch: &dyn Watch) -> Result<Self, RenderError> {
-        let tiles = plan.tiles();
-        let pixels = tiles.iter().map(Window::pixels).max().unwrap_or(1) as u64;
-        let rays = tiles.iter().map(camera_wave).max().unwrap_or(1) * plan.rays_per_pixel();
+        let pixels = plan.tiles().iter().map(Window::pixels).max().unwrap_or(1) as u64;
+        let rays = wave_rays(plan);
         let surfaces = Surfaces::build(
             device,
             &plan.cloud,
@@ -233,17 +239,12 @@ impl Renderer {
             &plan.volumes.stand_ins(),
             watch,
         )?;
-        let records = plan.cloud.points.len() as u64 * TEXELS_A_POLYNOMIAL;
-        let lists = (surfaces.cells.bytes() / 8).max(u64::from(MAX_DISC_PAIRS));
-        let of_volumes =
-            [plan.volumes.points.len(), plan.volumes.cells.len(), 2 * plan.volumes.stops.len()];
-        let of_volumes = of_volumes.into_iter().max().unwrap_or(0) as u64;
-        let longest = records.max(lists).max(of_volumes).max(u64::from(rays) * TEXELS_A_RAY);
-        let form = RayLoop::of(plan.ray_loop, device, longest);
+        let form =
+            RayLoop::of(plan.ray_loop, device, longest_list(plan, rays, surfaces.cells.bytes()));
         let live_rays = || Buffer::new(device, "list of live rays", u64::from(rays) * 4);
         let skips = if surfaces.is_listed && surfaces.grids.skip_cells() { SCENE_SKIPS } else { 0 };
         let levels = if surfaces.grids.are_several() { SCENE_LEVELS } else { 0 };
-        let scene = plan.scene_bits() | skips | levels;
+        let scene = plan.scene_bits() | levels;
         let shadows = if plan.lights.is_empty() { 1 } else { rays };
         Ok(Self {
             surfaces,
@@ -268,7 +269,7 @@ impl Renderer {
             ends_at_once: true,
             asked: Asked::default(),
             discs: Discs::new(device, plan.cloud.points.len() as u32, form)?,
-            passes: Passes::new(device, form, scene)?,
+            passes: Passes::new(device, form, scene, skips)?,
             recorder: Recorder::new(device)?,
             budget: Budget::of(device.info()),
             device: Arc::clone(device),
@@ -529,6 +530,21 @@ impl Renderer {
             _ => self.camera_path.clone(),
         }
     }
+}
+
+/// Rays of a wave of the plan, at most.
+fn wave_rays(plan: &Plan) -> u32 {
+    plan.tiles().iter().map(camera_wave).max().unwrap_or(1) * plan.rays_per_pixel()
+}
+
+/// Entries of the longest list that kernels of a plan read, with so many bytes of cells.
+fn longest_list(plan: &Plan, rays: u32, cell_bytes: u64) -> u64 {
+    let records = plan.cloud.points.len() as u64 * TEXELS_A_POLYNOMIAL;
+    let lists = (cell_bytes / 8).max(u64::from(MAX_DISC_PAIRS));
+    let volumes = &plan.volumes;
+    let of_volumes = [volumes.points.len(), volumes.cells.len(), 2 * volumes.stops.len()];
+    let of_volumes = of_volumes.into_iter().max().unwrap_or(0) as u64;
+    records.max(lists).max(of_volumes).max(u64::from(rays) * TEXELS_A_RAY)
 }
 
 /// What the rays of a plan, at most so many at once, will ask of the surfaces.

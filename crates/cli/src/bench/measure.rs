@@ -135,7 +135,7 @@ impl Times {
 /// The last of some builds.
 struct LastBuilt {
     built: Built,
-    /// How long the driver took to make pipelines in the first.
+    /// How long the first waited for pipelines.
     first_pipelines: Duration,
 }
 

@@ -1,5 +1,6 @@
 //! `render`: from a scene or a point file to pictures.
 
+use crate::ahead::Ahead;
 use crate::args::RenderArgs;
 use crate::engine::{Built, Engine, Frame, with_engine};
 use crate::errors::Failure;
@@ -66,11 +67,14 @@ fn render(
     progress: &Progress,
 ) -> Result<(), Failure> {
     let started = Instant::now();
+    let ahead = Ahead::new(engine);
+    ahead.fits(&input.scene);
     let sets = input.read_points(progress)?;
     let dropped: u64 = sets.iter().map(|set| set.dropped()).sum();
     let filtered_out = sets.iter().map(|set| set.filtered_out).sum();
     let mut plan = input.plan(&sets, args.crop, progress)?;
     plan.diagnostics = diagnostics;
+    ahead.picture(&plan);
     for (name, count) in plan.names.iter().zip(&plan.isolated).filter(|(_, count)| **count > 0) {
         progress.note(&format!("object '{name}': dropped {count} isolated points"));
     }

@@ -53,6 +53,11 @@ impl FitPolynomials {
         Ok(Self { kernels: [kernel(&few)?, kernel(&many)?] })
     }
 
+    /// What takes lists of so many entries.
+    pub fn kernel(&self, neighbors: u32) -> &Kernel {
+        &self.kernels[usize::from(neighbors > FEW)]
+    }
+
     /// Records one batch.
     pub fn record(&self, rec: &mut Recorder, io: FitPolynomialsIo<'_>, params: &FitParams) {
         // Of a large scene, the buffers by slot are longer than a binding.
@@ -65,7 +70,7 @@ impl FitPolynomials {
         let outcomes = part(size_of::<FitOutcome>());
         let sizes =
             if params.feature_size < 0.0 { part(size_of::<f32>()) } else { [0, io.sizes.bytes()] };
-        rec.pass(Self::NAME, &self.kernels[usize::from(params.neighbors > FEW)])
+        rec.pass(Self::NAME, self.kernel(params.neighbors))
             .buffer(FIT_POINTS, io.points)
             .buffer(FIT_NEIGHBORS, io.neighbors)
             .buffer_part(FIT_POLYNOMIALS, io.polynomials, polynomials[0], polynomials[1])

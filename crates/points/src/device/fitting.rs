@@ -6,7 +6,7 @@ use super::search::{Search, SearchSpace};
 use super::smooth::SmoothSizes;
 use super::work::Work;
 use crate::{Cloud, NeighborSearch, Rims, SlotRange, Watch};
-use gpu::{Buffer, Device, GpuError};
+use gpu::{Buffer, Device, GpuError, Kernel};
 use kernels::layout::{FitOutcome, FitParams, Rim};
 use std::sync::Arc;
 
@@ -63,6 +63,18 @@ pub(crate) fn fit_all(
     fitting.outcomes.read(0, &mut outcomes)?;
     let Fitting { outcomes: outcome_buffer, rims, searched_on_host, .. } = fitting;
     Ok(Fitted { outcomes, outcome_buffer, rims, searched_on_host })
+}
+
+/// The kernels that a build with so many neighbours begins with, those first that take longest to compile; so that
+/// their pipelines can be [made ahead](Kernel::make_ahead), while points are still being read.
+///
+/// # Errors
+/// A device that is too small for a kernel.
+pub fn kernels_of_fits(device: &Arc<Device>, neighbors: u32) -> Result<Vec<Kernel>, GpuError> {
+    let fit = FitPolynomials::new(device, true)?;
+    let mut kernels = vec![fit.kernel(neighbors).clone()];
+    kernels.extend(Search::new(device, true)?.kernels(neighbors));
+    Ok(kernels)
 }
 
 /// The k nearest others of each point of a cloud among those of its object, nearest first, `NONE` behind the

@@ -168,6 +168,12 @@ impl GridBuild {
         Kernel::new(device, name, module, bindings, size_of::<GridParams>())
     }
 
+    /// What every list of balls takes.
+    pub fn kernels(&self) -> Vec<Kernel> {
+        let own = [&self.order, &self.count, &self.emit, &self.ranges].into_iter().cloned();
+        own.chain(self.scan.kernels()).chain(self.sort.kernels()).collect()
+    }
+
     /// Where nobody asks for them: something to bind, which is not read.
     pub fn no_lists(&self) -> Result<GridLists, GpuError> {
         let empty = |name| Buffer::new(&self.device, name, 16);

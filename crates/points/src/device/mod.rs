@@ -15,14 +15,14 @@ mod sort;
 mod tree;
 mod work;
 
-pub use fitting::nearest_others;
+pub use fitting::{kernels_of_fits, nearest_others};
 pub use scan::Scan;
 pub use sort::{Pairs, Sort, SortSpace};
 pub use tree::Tree;
 
 use crate::{Cloud, Grids, Watch, plan_grids};
 use fitting::{Fitted, fit_all};
-use gpu::{Buffer, Device, GpuError};
+use gpu::{Buffer, Device, GpuError, Kernel};
 use grid_build::{GridBuild, GridBuildIo, LISTED_POINT_BYTES, slab_pairs};
 use kernels::layout::{FitOutcome, FitParams, GridLevel, LINE_ROW, Point, Polynomial};
 use std::sync::Arc;
@@ -153,6 +153,24 @@ pub struct Needed {
     pub tree: bool,
     /// What refinement of hits reads.
     pub point_cells: bool,
+}
+
+/// The kernels of tree and grid that a build asks for after the fits, to be [made ahead](Kernel::make_ahead).
+///
+/// # Errors
+/// A device that is too small for a kernel.
+pub fn kernels_of_structures(
+    device: &Arc<Device>,
+    needed: Needed,
+) -> Result<Vec<Kernel>, GpuError> {
+    let mut kernels = Vec::new();
+    if needed.tree {
+        kernels.extend(Tree::kernels(device)?);
+    }
+    if needed.lists || !needed.tree {
+        kernels.extend(GridBuild::new(device, true, 0)?.kernels());
+    }
+    Ok(kernels)
 }
 
 impl Surfaces {

@@ -28,6 +28,12 @@ impl Scan {
         })
     }
 
+    /// What it takes.
+    #[must_use]
+    pub fn kernels(&self) -> [Kernel; 2] {
+        [self.reduce.clone(), self.apply.clone()]
+    }
+
     /// Space for the sums of runs, level by level, of a list of at most `count` values.
     ///
     /// # Errors

@@ -143,6 +143,15 @@ impl Search {
         })
     }
 
+    /// What searches of so many neighbours take.
+    pub fn kernels(&self, neighbors: u32) -> Vec<Kernel> {
+        let many = usize::from(neighbors > FEW);
+        let untied = self.find_untied.iter().filter(|_| many == 0);
+        let others = [&self.find[many], &self.gather, &self.bound[many]];
+        let boxes = [&self.leaf_boxes, &self.node_boxes];
+        untied.chain(others).chain(boxes).cloned().collect()
+    }
+
     /// Records the boxes around the points of one object, whose lists will have at most `neighbors` entries.
     pub fn record_boxes(
         &self,

@@ -78,6 +78,12 @@ impl Sort {
         })
     }
 
+    /// What it takes.
+    #[must_use]
+    pub fn kernels(&self) -> [Kernel; 2] {
+        [self.count.clone(), self.scatter.clone()]
+    }
+
     /// Records the sort of the first `count` of `pairs`, whose keys are at most `largest`. The
     /// buffers of `pairs` and the space change places.
     pub fn record(

@@ -91,6 +91,20 @@ impl Tree {
         self.nodes.bytes() / NODE_BYTES
     }
 
+    /// `tree_leaves` and `tree_nodes`.
+    pub(crate) fn kernels(device: &Arc<Device>) -> Result<[Kernel; 2], GpuError> {
+        let texels = (TRACE_POLYNOMIALS, Binding::UniformTexelBuffer(Texel::Four));
+        let written = [TREE_BOXES, TREE_NODES].map(|at| (at, Binding::StorageBuffer));
+        let kernel = |name, module: &[u32], bindings: &[(u32, Binding)]| {
+            Kernel::new(device, name, module, bindings, size_of::<TreeLevelParams>())
+        };
+        let of_points = [&[texels], &written[..]].concat();
+        Ok([
+            kernel("tree_leaves", &spirv::tree_leaves(), &of_points)?,
+            kernel("tree_nodes", &spirv::tree_nodes(), &written)?,
+        ])
+    }
+
     /// Over the first `points` polynomials, which are read through a texel buffer.
     pub(crate) fn build(
         device: &Arc<Device>,
@@ -103,14 +117,7 @@ impl Tree {
         levels[0].first -= info.gap;
         let nodes = Buffer::paged(device, "tree", count * NODE_BYTES)?;
         let boxes = Buffer::new(device, "tree boxes", count * size_of::<SearchNode>() as u64)?;
-        let texels = (TRACE_POLYNOMIALS, Binding::UniformTexelBuffer(Texel::Four));
-        let written = [TREE_BOXES, TREE_NODES].map(|at| (at, Binding::StorageBuffer));
-        let kernel = |name, module: &[u32], bindings: &[(u32, Binding)]| {
-            Kernel::new(device, name, module, bindings, size_of::<TreeLevelParams>())
-        };
-        let of_points = [&[texels], &written[..]].concat();
-        let of_points = kernel("tree_leaves", &spirv::tree_leaves(), &of_points)?;
-        let of_nodes = kernel("tree_nodes", &spirv::tree_nodes(), &written)?;
+        let [of_points, of_nodes] = Self::kernels(device)?;
         let mut below = Level { first: 0, count: points };
         for (height, level) in levels.iter().enumerate() {
             let end = level.end();

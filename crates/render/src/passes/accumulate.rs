@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// Adds a sample of each pixel to the sum of those before it; after the last, the mean.
 pub(crate) struct Accumulate {
-    kernel: Kernel,
+    pub kernel: Kernel,
 }
 
 impl Accumulate {

@@ -21,7 +21,7 @@ pub(crate) struct CameraRaysIo<'a> {
 
 /// The camera's ray of each pixel, in the first cell that it meets.
 pub(crate) struct CameraRays {
-    kernel: Kernel,
+    pub kernel: Kernel,
 }
 
 impl CameraRays {

@@ -45,8 +45,8 @@ pub(crate) struct CameraTraceIo<'a> {
 /// The first wave from the eye to the film, where nothing but surfaces meets it (\[T\] §4).
 pub(crate) struct CameraTrace {
     /// Where the device's subgroups are made of packets of eight that can vote.
-    by_discs: Option<Kernel>,
-    by_tree: Kernel,
+    pub by_discs: Option<Kernel>,
+    pub by_tree: Kernel,
 }
 
 impl CameraTrace {

@@ -27,7 +27,7 @@ pub(crate) struct ClassifyIo<'a> {
 
 /// What becomes of each ray of a wave that has met a surface, or nothing (\[T\] §5).
 pub(crate) struct Classify {
-    kernel: Kernel,
+    pub kernel: Kernel,
 }
 
 impl Classify {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// How many screen tiles the discs of each leaf cover (\[T\] §4).
 pub(crate) struct DiscCount {
-    kernel: Kernel,
+    pub kernel: Kernel,
 }
 
 impl DiscCount {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// A pair for each screen tile that the discs of each leaf's points cover.
 pub(crate) struct DiscEmit {
-    kernel: Kernel,
+    pub kernel: Kernel,
 }
 
 impl DiscEmit {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// Where each screen tile's points begin and end in the sorted list of pairs.
 pub(crate) struct DiscRanges {
-    kernel: Kernel,
+    pub kernel: Kernel,
 }
 
 impl DiscRanges {

@@ -49,8 +49,8 @@ impl Marks {
 
 /// Counts and lists the rays of a wave that have a mark, in order.
 pub(crate) struct ListMarked {
-    count: Kernel,
-    list: Kernel,
+    pub count: Kernel,
+    pub list: Kernel,
     scan: Scan,
 }
 

@@ -32,7 +32,7 @@ pub(crate) struct ScatterIo<'a> {
 
 /// The reflected and refracted rays that a wave makes (\[T\] §5).
 pub(crate) struct Scatter {
-    kernel: Kernel,
+    pub kernel: Kernel,
 }
 
 impl Scatter {

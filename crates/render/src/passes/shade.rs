@@ -25,7 +25,7 @@ pub(crate) struct ShadeIo<'a> {
 
 /// Lambert's law at the diffuse hits of a wave (method, section 4).
 pub(crate) struct Shade {
-    kernel: Kernel,
+    pub kernel: Kernel,
 }
 
 impl Shade {

@@ -29,7 +29,7 @@ pub(crate) struct ShadowRaysIo<'a> {
 
 /// The rays from the diffuse hits of a wave towards one light (\[T\] §5).
 pub(crate) struct ShadowRays {
-    kernel: Kernel,
+    pub kernel: Kernel,
 }
 
 impl ShadowRays {

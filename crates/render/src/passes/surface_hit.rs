@@ -24,7 +24,7 @@ pub(crate) struct SurfaceHitIo<'a> {
 
 /// Where each ray that has ended met the polynomial it hit.
 pub(crate) struct SurfaceHit {
-    kernel: Kernel,
+    pub kernel: Kernel,
 }
 
 impl SurfaceHit {

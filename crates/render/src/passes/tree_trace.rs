@@ -12,8 +12,9 @@ use std::sync::Arc;
 
 /// Lets each live ray visit nodes of the tree.
 pub(crate) struct TreeTrace {
-    from_camera: Kernel,
-    leaving: Kernel,
+    pub from_camera: Kernel,
+    /// For rays from surfaces.
+    pub leaving: Kernel,
 }
 
 impl TreeTrace {
