@@ -9,8 +9,8 @@
 
 // One rotation that zeroes apq. r is the third axis; vp and vq are columns of the eigenvectors.
 // An entry that is nothing beside the diagonal is left alone: rotating by it would only breed
-// denormals, which drivers treat differently.
-void jacobi_rotate(inout float app, inout float aqq, inout float apq, inout float apr,
+// denormals, which drivers treat differently. Whether it is not.
+bool jacobi_rotate(inout float app, inout float aqq, inout float apq, inout float apr,
                    inout float aqr, inout vec3 vp, inout vec3 vq) {
     bool turn = abs(apq) > 1e-12 * (abs(app) + abs(aqq));
     float theta = (aqq - app) / (2.0 * (turn ? apq : 1.0));
@@ -27,6 +27,7 @@ void jacobi_rotate(inout float app, inout float aqq, inout float apq, inout floa
     vec3 p = vp * c - vq * s;
     vq = vp * s + vq * c;
     vp = p;
+    return turn;
 }
 
 // Eigenvalues, ascending (ties keep the order x, y, z), and the eigenvector of the smallest and
@@ -35,10 +36,13 @@ void eigen_symmetric(vec3 diagonal, vec3 off, out vec3 values, out vec3 smallest
     float xx = diagonal.x, yy = diagonal.y, zz = diagonal.z;
     float xy = off.x, xz = off.y, yz = off.z;
     vec3 vx = vec3(1.0, 0.0, 0.0), vy = vec3(0.0, 1.0, 0.0), vz = vec3(0.0, 0.0, 1.0);
-    for (int sweep = 0; sweep < JACOBI_SWEEPS; ++sweep) {
-        jacobi_rotate(xx, yy, xy, xz, yz, vx, vy);
-        jacobi_rotate(xx, zz, xz, xy, yz, vx, vz);
-        jacobi_rotate(yy, zz, yz, xy, xz, vy, vz);
+    // Once nothing turns, nothing will.
+    bool turns = true;
+    for (int sweep = 0; turns && sweep < JACOBI_SWEEPS; ++sweep) {
+        bool turns_xy = jacobi_rotate(xx, yy, xy, xz, yz, vx, vy);
+        bool turns_xz = jacobi_rotate(xx, zz, xz, xy, yz, vx, vz);
+        bool turns_yz = jacobi_rotate(yy, zz, yz, xy, xz, vy, vz);
+        turns = turns_xy || turns_xz || turns_yz;
     }
     bool y_first = yy < xx;
     float low = y_first ? yy : xx, high = y_first ? xx : yy;
