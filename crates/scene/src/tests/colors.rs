@@ -1,0 +1,50 @@
+//! Colours of objects.
+
+use super::{SMALL, error_with, read_with};
+use crate::*;
+
+#[test]
+fn attributes_have_a_map_and_their_own_range_if_none_is_given() {
+    let scene = read_with(SMALL, &["objects.0.material.albedo=attribute:z"]).unwrap();
+    let height = Albedo::Attribute { name: "z".into(), color_map: ColorMap::Viridis, range: None };
+    assert_eq!(scene.objects[0].material.albedo, height);
+    for (map, name) in ColorMap::ALL.into_iter().zip(ColorMap::NAMES) {
+        assert_eq!(map.name(), name);
+        assert_eq!(format!("{map:?}").to_lowercase(), name);
+    }
+}
+
+#[test]
+fn colors_that_exclude_each_other_are_errors() {
+    let cases: [(&[&str], &str); 10] = [
+        (
+            &["objects.0.material.albedo=[1, 1, 1]", "objects.0.material.texture=a.png"],
+            "objects[0].material.texture: found both albedo and texture",
+        ),
+        (
+            &["background.color=[1, 1, 1]", "background.environment=a.exr"],
+            "background.environment: found both color and environment",
+        ),
+        (&["objects.0.material.texture_axis=x"], "there is none; add texture, or remove it"),
+        (
+            &["objects.0.material.color_map=turbo"],
+            "there is none; write albedo = \"attribute:NAME\"",
+        ),
+        (
+            &["objects.0.material.albedo=points", "objects.0.material.value_range=[0, 1]"],
+            "objects[0].material.value_range: belongs to the albedo of an attribute",
+        ),
+        (&["objects.0.material.value_range=[1, 1]"], "the second greater; raise the second"),
+        (&["objects.0.material.value_range=[1]"], "expected two numbers"),
+        (&["objects.0.material.albedo=attribute:"], "found the string \"attribute:\", expected"),
+        (&["objects.0.material.albedo=attribut:z"], "\"attribute:\" and the name of an attribute"),
+        (
+            &["objects.0.material.albedo=attribute:z", "objects.0.material.color_map=virdis"],
+            "did you mean \"viridis\"?",
+        ),
+    ];
+    for (overrides, expected) in cases {
+        let error = error_with(SMALL, overrides);
+        assert!(error.contains(expected) && error.lines().count() == 1, "{overrides:?}: {error}");
+    }
+}

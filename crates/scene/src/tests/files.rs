@@ -1,0 +1,126 @@
+//! Scene files, point files, and the files that scenes name.
+
+use super::SMALL;
+use crate::*;
+use std::path::Path;
+
+#[test]
+fn load_reads_a_file_and_finds_its_points_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.toml");
+    std::fs::write(&path, SMALL).unwrap();
+    let error = Scene::load(&path, &[]).unwrap_err().to_string();
+    let points = folder.path().join("a.ply");
+    let place = format!("{}:2:10: objects[0].points: found no file at '", path.display());
+    assert!(error.starts_with(&place) && error.contains(points.to_str().unwrap()), "{error}");
+    std::fs::write(&points, "").unwrap();
+    let scene = Scene::load(&path, &[]).unwrap();
+    assert_eq!(scene.objects[0].points, points);
+    let set = ["objects.0.points=b.ply".to_owned()];
+    let error = Scene::load(&path, &set).unwrap_err().to_string();
+    assert!(error.contains("--set objects.0.points=b.ply: objects[0].points: found no"), "{error}");
+    let set = ["objects.0.points=\"a\\u0000\"".to_owned()];
+    assert!(Scene::load(&path, &set).is_err(), "a NUL byte is no path");
+    let set = ["objects.0.points=.".to_owned()];
+    let error = Scene::load(&path, &set).unwrap_err().to_string();
+    assert!(error.contains("found a folder"), "{error}");
+}
+
+#[test]
+fn what_is_no_scene_file_is_a_clear_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let load = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        Scene::load(&path, &[]).unwrap_err().to_string()
+    };
+    let error = load("latin.toml", b"[image]\n# caf\xe9\n");
+    assert!(error.contains("latin.toml:2:6: found byte 0xe9, expected UTF-8"), "{error}");
+    assert!(load("empty.toml", b"").contains("empty.toml:1:1: objects: missing"));
+    let huge = load("huge.toml", &vec![b'#'; (16 << 20) + 1]);
+    assert!(huge.contains("found more than 16777216 bytes"), "{huge}");
+    let error = Scene::load(folder.path(), &[]).unwrap_err().to_string();
+    assert!(error.contains("found a folder, expected a scene file"), "{error}");
+    let error = Scene::load(&folder.path().join("none.toml"), &[]).unwrap_err().to_string();
+    assert!(error.ends_with("none.toml: no such file; check the path"), "{error}");
+}
+
+#[test]
+fn a_point_file_is_a_scene_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = folder.path().join("a \"b\" \\.ply");
+    let error = Scene::for_point_file(&points, Up::Y, &[]).unwrap_err().to_string();
+    assert!(error.contains("found no file at"), "{error}");
+    std::fs::write(&points, "").unwrap();
+    let set = ["objects.0.surface.polynomial=\"incomplete\"".to_owned()];
+    let scene = Scene::for_point_file(&points, Up::Y, &set).unwrap();
+    assert_eq!((scene.camera, scene.lights.len(), scene.objects.len()), (None, 2, 1));
+    assert_eq!(scene.objects[0].points, points);
+    assert_eq!(scene.objects[0].name, "a \"b\" \\");
+    assert_eq!(scene.objects[0].surface.polynomial, Polynomial::Incomplete);
+    assert_eq!(Scene::from_toml(&scene.settings_toml(), Path::new(""), &[]), Ok(scene));
+    let set = ["image.sizes=3".to_owned()];
+    let error = Scene::for_point_file(&points, Up::Y, &set).unwrap_err().to_string();
+    assert!(error.contains("--set image.sizes=3: image.sizes: unknown key"), "{error}");
+}
+
+/// The light falls from above: against y, or against z.
+#[test]
+fn up_turns_the_lights_of_a_point_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = folder.path().join("a.ply");
+    std::fs::write(&points, "").unwrap();
+    let directions = |up| -> Vec<[f64; 3]> {
+        let lights = Scene::for_point_file(&points, up, &[]).unwrap().lights;
+        let direction = |light: &Light| match *light {
+            Light::Directional { direction, .. } => direction,
+            Light::Point { .. } => panic!("a point light"),
+        };
+        lights.iter().map(direction).collect()
+    };
+    let turn = Transform { rotate: [90.0, 0.0, 0.0], ..Transform::IDENTITY };
+    let turned: Vec<_> = directions(Up::Y).into_iter().map(|d| turn.rotate(d)).collect();
+    assert_eq!(directions(Up::Z), turned);
+    let over: Vec<_> = directions(Up::Y).into_iter().map(|[x, y, z]| [x, -y, -z]).collect();
+    assert_eq!(directions(Up::MinusY), over);
+    assert!(directions(Up::Y)[0][1] < 0.0);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_point_files_name_need_not_be_utf8() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().unwrap();
+    let points = folder.path().join(std::ffi::OsStr::from_bytes(b"a\xff.ply"));
+    std::fs::write(&points, "").unwrap();
+    assert_eq!(Scene::for_point_file(&points, Up::Y, &[]).unwrap().objects[0].points, points);
+}
+
+/// The background of a point file rendered directly is nobody's wish, so an environment replaces it.
+#[test]
+fn a_point_file_takes_an_environment() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = folder.path().join("a.ply");
+    std::fs::write(&points, "").unwrap();
+    let sky = folder.path().join("sky.hdr");
+    std::fs::write(&sky, "").unwrap();
+    let set = format!("background.environment={}", sky.display());
+    let scene = Scene::for_point_file(&points, Up::Y, &[set]).unwrap();
+    assert_eq!(scene.background.environment.map(|image| image.path), Some(sky));
+}
+
+/// A missing image is found before points are read, at its line.
+#[test]
+fn images_that_are_missing_are_found_by_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("s.toml");
+    std::fs::write(folder.path().join("a.ply"), "").unwrap();
+    let text = "background.environment = \"no.exr\"\n[[objects]]\npoints = \"a.ply\"\n\
+                material.texture = \"no.png\"\n";
+    std::fs::write(&scene, text).unwrap();
+    let error = Scene::load(&scene, &[]).unwrap_err().to_string();
+    let lines: Vec<&str> = error.lines().collect();
+    assert_eq!(lines.len(), 2, "{error}");
+    assert!(lines[0].contains(":1:26: background.environment: found no file at"), "{error}");
+    assert!(lines[1].contains(":4:20: objects[0].material.texture: found no file at"), "{error}");
+}

@@ -1,0 +1,98 @@
+//! What is written of a scene, and the schema.
+
+use super::{FULL, SMALL, orthographic, read};
+use crate::keys::{Absent, Kind, SCENE, Table};
+use crate::not_built::not_built;
+use crate::*;
+
+#[test]
+fn settings_parse_to_the_same_scene_and_the_same_bytes() {
+    let mut scene = read(FULL).unwrap();
+    let settings = scene.settings_toml();
+    let again = read(&settings).unwrap();
+    (scene.render.cells_per_pass, scene.render.ray_loop) = (0, RayLoop::Auto);
+    scene.render.primary = Primary::Auto;
+    scene.render.secondary = Secondary::Auto;
+    assert_eq!(again, scene);
+    assert_eq!(again.settings_toml(), settings);
+    let small = read(SMALL).unwrap();
+    assert_eq!(read(&small.settings_toml()), Ok(small));
+}
+
+#[test]
+fn settings_state_every_built_key() {
+    fn names(table: &Table, path: &str, out: &mut Vec<(&'static str, String)>) {
+        for key in table.keys {
+            let path = check::joined(path, key.name);
+            match key.kind {
+                _ if not_built(&path).is_some() => {}
+                Kind::Table(inner) | Kind::Tables { table: inner, .. } => names(inner, &path, out),
+                _ => out.push((key.name, path)),
+            }
+        }
+    }
+    let mut keys = Vec::new();
+    names(&SCENE, "", &mut keys);
+    // No camera has the keys of both projections.
+    let mut settings =
+        read(FULL).unwrap().settings_toml() + &read(&orthographic()).unwrap().settings_toml();
+    // Instead of the colour that FULL has.
+    let sky = read(&format!("background.environment = \"sky.exr\"\n{SMALL}"));
+    settings += &sky.unwrap().settings_toml();
+    // Instead of a volume along the way.
+    let iso = "[objects.volume]\nscalar = \"s\"\nmode = \"isosurface\"\niso = 0.5\n";
+    settings += &read(&format!("{SMALL}{iso}")).unwrap().settings_toml();
+    for (name, path) in keys {
+        let stated = settings.lines().any(|line| line.starts_with(&format!("{name} = ")));
+        // Four change no picture; the Abbe number is in the indices.
+        let unseen = [
+            "render.cells_per_pass",
+            "render.loop",
+            "render.primary",
+            "render.secondary",
+            "objects.material.abbe",
+        ]
+        .contains(&path.as_str());
+        assert_eq!(stated, !unseen, "{path}");
+    }
+}
+
+#[test]
+fn settings_keep_every_bit_of_a_number() {
+    let mut scene = read(FULL).unwrap();
+    for value in [0.1 + 0.2, f64::MIN_POSITIVE, 5e-324, 1.0 / 3.0, 1e15, 123_456_789.123_456_79] {
+        scene.background.color = [value, 0.0, 0.7];
+        let again = read(&scene.settings_toml()).unwrap();
+        assert_eq!(again.background.color.map(f64::to_bits), [value, 0.0, 0.7].map(f64::to_bits));
+    }
+}
+
+#[test]
+fn schema_states_every_key_and_allows_no_other() {
+    fn compare(table: &Table, schema: &serde_json::Value) {
+        assert_eq!(schema["additionalProperties"], false, "{}", table.header);
+        let properties = schema["properties"].as_object().unwrap();
+        assert_eq!(properties.len(), table.keys.len(), "{}", table.header);
+        for key in table.keys {
+            let property = &properties[key.name];
+            assert!(property["description"].is_string(), "{}", key.name);
+            match (&key.kind, key.absent) {
+                (Kind::Table(inner), _) => compare(inner, property),
+                (Kind::Tables { table: inner, in_file, .. }, _) => {
+                    let list = if *in_file { &property["anyOf"][0] } else { property };
+                    compare(inner, &list["items"]);
+                }
+                (_, Absent::Value(_)) => assert!(!property["default"].is_null(), "{}", key.name),
+                _ => {}
+            }
+        }
+    }
+    let schema = json_schema();
+    compare(&SCENE, &schema);
+    let trust =
+        &schema["properties"]["objects"]["items"]["properties"]["surface"]["properties"]["trust"];
+    assert_eq!((&trust["minimum"], &trust["maximum"]), (&0.5.into(), &1.0.into()));
+    assert_eq!(trust["default"], 0.6);
+    let ray_loop = &schema["properties"]["render"]["properties"]["loop"];
+    assert_eq!(ray_loop["enum"], serde_json::json!(["images", "queue", "auto"]));
+}
