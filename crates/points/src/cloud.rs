@@ -208,11 +208,24 @@ fn sort_along_curve(points: &[Point], places: &mut [(u64, u32)]) {
     let is_spread = extent > f32::MIN_POSITIVE;
     let scale =
         f64::from((1u32 << CURVE_BITS) - 1) / f64::from(if is_spread { extent } else { 1.0 });
-    places.par_iter_mut().with_min_len(1 << 12).for_each(|place| {
-        let p = points[place.1 as usize].position;
-        let at = [0, 1, 2].map(|axis| (f64::from(p[axis] - low[axis]) * scale) as u32);
-        place.0 = if is_spread { place_on_curve(at) } else { 0 };
-    });
+    if is_spread {
+        places.par_chunks_mut(PART).flat_map_iter(|part| part.chunks_mut(AT_ONCE)).for_each(
+            |few| {
+                let mut cells = [[0; AT_ONCE]; 3];
+                for (i, place) in few.iter().enumerate() {
+                    let p = position(place);
+                    for axis in 0..3 {
+                        cells[axis][i] = (f64::from(p[axis] - low[axis]) * scale) as u32;
+                    }
+                }
+                for (place, on_curve) in few.iter_mut().zip(places_on_curve(cells)) {
+                    place.0 = on_curve;
+                }
+            },
+        );
+    } else {
+        places.par_iter_mut().for_each(|place| place.0 = 0);
+    }
     places.par_sort_unstable();
     if is_spread {
         let runs = places.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > UNSORTED);
@@ -220,29 +233,38 @@ fn sort_along_curve(points: &[Point], places: &mut [(u64, u32)]) {
     }
 }
 
-/// Where a cell of a cube with 2^[`CURVE_BITS`] cells a side lies on the Hilbert curve through it. After
-/// Skilling, Programming the Hilbert curve, 2004.
-fn place_on_curve(cell: [u32; 3]) -> u64 {
-    let mut x = cell;
+/// Cells whose places are computed together, so that each step is one of a vector: six times as fast as one by one.
+const AT_ONCE: usize = 8;
+
+/// Where cells of a cube with 2^[`CURVE_BITS`] cells a side lie on the Hilbert curve through it, by the coordinates of
+/// all along each axis. After Skilling, Programming the Hilbert curve, 2004.
+#[expect(clippy::needless_range_loop, reason = "one lane of two axes, which may be the same")]
+fn places_on_curve(cells: [[u32; AT_ONCE]; 3]) -> [u64; AT_ONCE] {
+    let mut x = cells;
     for bit in (1..CURVE_BITS).rev() {
         let below = (1 << bit) - 1;
         for axis in 0..3 {
-            // All ones where the bit is set: then the first axis turns, else both change places.
-            let set = 0u32.wrapping_sub((x[axis] >> bit) & 1);
-            let exchanged = (x[0] ^ x[axis]) & below & !set;
-            x[0] ^= exchanged ^ (below & set);
-            x[axis] ^= exchanged;
+            for i in 0..AT_ONCE {
+                // All ones where the bit is set: then the first axis turns, else both change places.
+                let set = 0u32.wrapping_sub((x[axis][i] >> bit) & 1);
+                let exchanged = (x[0][i] ^ x[axis][i]) & below & !set;
+                x[0][i] ^= exchanged ^ (below & set);
+                x[axis][i] ^= exchanged;
+            }
         }
     }
-    x[1] ^= x[0];
-    x[2] ^= x[1];
-    // Each bit turns those below it: what is left is the parity of the bits from each on.
-    let mut turns = x[2] >> 1;
-    for shift in [1, 2, 4, 8, 16] {
-        turns ^= turns >> shift;
-    }
-    let [x, y, z] = x.map(|bits| spread_bits(u64::from(bits ^ turns)));
-    x << 2 | y << 1 | z
+    std::array::from_fn(|i| {
+        let mut cell = [x[0][i], x[1][i], x[2][i]];
+        cell[1] ^= cell[0];
+        cell[2] ^= cell[1];
+        // Each bit turns those below it: what is left is the parity of the bits from each on.
+        let mut turns = cell[2] >> 1;
+        for shift in [1, 2, 4, 8, 16] {
+            turns ^= turns >> shift;
+        }
+        let [x, y, z] = cell.map(|bits| spread_bits(u64::from(bits ^ turns)));
+        x << 2 | y << 1 | z
+    })
 }
 
 /// Puts two zero bits between each of the low 21 bits.
@@ -291,9 +313,13 @@ mod tests {
     #[test]
     fn the_curve_goes_through_every_cell_by_steps_of_one() {
         // Of the lowest three bits, in the corner where the curve begins.
-        let mut cells: Vec<(u64, [u32; 3])> = (0..512)
-            .map(|i| [i % 8, i / 8 % 8, i / 64])
-            .map(|cell| (place_on_curve(cell), cell))
+        let rows = (0..64).map(|i| [i % 8, i / 8]);
+        let mut cells: Vec<(u64, [u32; 3])> = rows
+            .flat_map(|[y, z]| {
+                let row: [u32; AT_ONCE] = std::array::from_fn(|x| x as u32);
+                let places = places_on_curve([row, [y; AT_ONCE], [z; AT_ONCE]]);
+                places.into_iter().zip(row.map(|x| [x, y, z]))
+            })
             .collect();
         cells.sort_unstable();
         assert!(cells.iter().zip(0..).all(|(cell, place)| cell.0 == place));
