@@ -175,18 +175,28 @@ void main() {
     bool finds_rims = params.rim_limit > 0.0;
     if ((params.close_gaps != 0u || finds_rims) && kind != FIT_NO_SURFACE) {
         float square = 0.0, extent = 0.0;
+#ifdef FEW
+        // The neighbours are at hand: once through them for each group is the shortest code.
         for (int group = 0; group < GAP_GROUPS; ++group) {
             vec4 cosines = GAP_COSINES[group], sines = GAP_SINES[group];
-            Extents extents = Extents(vec4(UNBOUNDED), vec4(UNBOUNDED));
+            Extents extents = no_bisectors();
 #define STEP \
     vec2 q = vec2(dot3(y, u), dot3(y, v)); \
     narrow(extents, cosines, sines, q, 0.5 * (q.x * q.x + q.y * q.y));
             EACH_NEIGHBOR
 #undef STEP
-            square = larger(square, larger(extent_of_cell(extents.ahead, cosines, sines, c),
-                                           extent_of_cell(extents.behind, -cosines, -sines, c)));
-            extent = larger(extent, larger(farthest_of(extents.ahead), farthest_of(extents.behind)));
+            add_extents(extents, cosines, sines, c, square, extent);
         }
+#else
+        Extents extents[GAP_GROUPS] = Extents[GAP_GROUPS](no_bisectors(), no_bisectors(), no_bisectors());
+#define STEP \
+    vec2 q = vec2(dot3(y, u), dot3(y, v)); \
+    float half_square = 0.5 * (q.x * q.x + q.y * q.y); \
+    for (int i = 0; i < GAP_GROUPS; ++i) narrow(extents[i], GAP_COSINES[i], GAP_SINES[i], q, half_square);
+        EACH_NEIGHBOR
+#undef STEP
+        for (int i = 0; i < GAP_GROUPS; ++i) add_extents(extents[i], GAP_COSINES[i], GAP_SINES[i], c, square, extent);
+#endif
         bool closed = extent <= 1.0;
         reach_needed = closed && params.close_gaps != 0u ? GAP_MARGIN * sqrt(square) : 0.0;
         openness = extent * (h / reach);

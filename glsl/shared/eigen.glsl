@@ -9,7 +9,7 @@
 
 // One rotation that zeroes apq. r is the third axis; vp and vq are columns of the eigenvectors.
 // An entry that is nothing beside the diagonal is left alone: rotating by it would only breed
-// denormals, which drivers treat differently. Whether it is not.
+// denormals, which drivers treat differently. Returns whether it turned.
 bool jacobi_rotate(inout float app, inout float aqq, inout float apq, inout float apr,
                    inout float aqr, inout vec3 vp, inout vec3 vq) {
     bool turn = abs(apq) > 1e-12 * (abs(app) + abs(aqq));

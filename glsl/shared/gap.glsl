@@ -26,6 +26,10 @@ struct Extents {
     vec4 ahead, behind;
 };
 
+Extents no_bisectors() {
+    return Extents(vec4(UNBOUNDED), vec4(UNBOUNDED));
+}
+
 // Narrows them by the bisector with the neighbour at q, |q| > 0: it is ahead or behind.
 void narrow(inout Extents extents, vec4 cosines, vec4 sines, vec2 q, float half_square) {
     vec4 along = q.x * cosines + q.y * sines;
@@ -45,5 +49,12 @@ float extent_of_cell(vec4 extent, vec4 cosines, vec4 sines, float c[6]) {
 
 float farthest_of(vec4 extent) {
     return larger(larger(extent.x, extent.y), larger(extent.z, extent.w));
+}
+
+// The greatest of both so far, and of these: the squared distance to the surface, and the cell's extent.
+void add_extents(Extents extents, vec4 cosines, vec4 sines, float c[6], inout float square, inout float extent) {
+    square = larger(square, larger(extent_of_cell(extents.ahead, cosines, sines, c),
+                                   extent_of_cell(extents.behind, -cosines, -sines, c)));
+    extent = larger(extent, larger(farthest_of(extents.ahead), farthest_of(extents.behind)));
 }
 #endif

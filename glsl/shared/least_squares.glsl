@@ -110,4 +110,10 @@ bool solve(NormalEquations eq, uint kind, out float solution[6]) {
 #undef L
 #undef PIVOT
 #undef BELOW
+#undef HAS_0
+#undef HAS_1
+#undef HAS_2
+#undef HAS_3
+#undef HAS_4
+#undef HAS_5
 #endif

@@ -1,21 +1,33 @@
 //! Pipelines that are made ahead are those that a build and a picture ask for.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-use harness::{Bench, fibonacci_sphere, moved, plan_of, set_of};
+use harness::{Bench, fibonacci_sphere, moved, plan_of, set_of, with_attribute};
 use points::device::kernels_of_fits;
 use points::{PointSet, Unwatched};
 use render::Renderer;
 use std::collections::HashSet;
+use std::sync::{Mutex, PoisonError};
+
+/// Held by the one test that has a device.
+static TURN: Mutex<()> = Mutex::new(());
 
 const LIT: &str = "[[lights]]\nkind = \"directional\"\ndirection = [-0.4, -1.0, -0.3]\n\
     irradiance = [3.0, 2.9, 2.7]\n";
 
-/// Renders with what is likely made ahead; how many pipelines that did not foresee, and the kernels that ran.
-fn unforeseen(bench: &Bench, text: &str, sets: &[PointSet]) -> (usize, HashSet<&'static str>) {
+/// Renders with what is likely made ahead, on a device of its own; how many pipelines that did not foresee, and the
+/// kernels that ran.
+fn unforeseen(text: &str, sets: &[PointSet]) -> (usize, HashSet<&'static str>) {
     let plan = plan_of(text, sets);
-    bench.with_device(|device| {
-        let neighbors = plan.fits[0].neighbors;
-        let fits = kernels_of_fits(device, neighbors).expect("kernels");
+    let neighbors = if plan.cloud.points.is_empty() { 0 } else { plan.fits[0].neighbors };
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    Bench::open().with_device(|device| {
+        // Others are kept from test to test (harness), with what those made.
+        let is_new = device.pipeline_count() == 0;
+        assert!(is_new || !device.info().name.contains("llvmpipe"), "a device of its own");
+        let fits = match neighbors {
+            0 => Vec::new(),
+            _ => kernels_of_fits(device, neighbors).expect("kernels"),
+        };
         let others = Renderer::likely_kernels(device, &plan).expect("kernels");
         let likely: HashSet<_> = fits.iter().chain(&others).map(gpu::Kernel::name).collect();
         for kernel in fits.iter().chain(&others) {
@@ -33,26 +45,58 @@ fn unforeseen(bench: &Bench, text: &str, sets: &[PointSet]) -> (usize, HashSet<&
     })
 }
 
-/// Diffuse points by discs and by the tree, glass, several samples: nothing is left to wait for.
+/// Diffuse points by discs and by the tree, without lists, glass, several samples: nothing is left to wait for.
 #[test]
 fn what_surfaces_take_is_foreseen() {
-    let bench = Bench::open();
     let ball = |at| set_of(moved(&fibonacci_sphere(3000), at));
     let sets = [ball([0.0; 3]), ball([0.8, 0.0, -3.0])];
-    let objects = |material: &str| {
+    let objects = |of_each: &str| {
         format!(
-            "{LIT}[[objects]]\npoints = \"a.ply\"\n{material}\n[[objects]]\npoints = \"b.ply\"\n"
+            "{LIT}[[objects]]\npoints = \"a.ply\"\n{of_each}\n[[objects]]\npoints = \"b.ply\"\n{of_each}\n"
         )
     };
     let glass = objects("material = { kind = \"glass\", ior = [1.4, 1.5, 1.6] }");
+    let bare = objects("surface = { normals = \"polynomial\", neighbors = 24 }");
     for (text, ran) in [
         (format!("[image]\nsize = [256, 192]\n{}", objects("")), "disc_emit"),
-        (format!("[image]\nsize = [64, 64]\n{}", objects("")), "tree_nodes"),
+        (format!("[image]\nsize = [64, 64]\n{}", objects("")), "grid_emit"),
+        (format!("[image]\nsize = [200, 160]\n{bare}"), "tree_nodes"),
         (format!("[image]\nsize = [256, 192]\n{glass}"), "scatter"),
         (format!("[image]\nsize = [64, 64]\nsamples = 4\n{glass}"), "camera_rays"),
     ] {
-        let (count, kernels) = unforeseen(&bench, &text, &sets);
+        let (count, kernels) = unforeseen(&text, &sets);
         assert!(kernels.contains(ran), "{text}: {kernels:?}");
         assert_eq!(count, 0, "{text}: pipelines made in the course of the work");
+    }
+}
+
+/// Volumes, isosurfaces and refined hits: what is large is not left to wait for.
+#[test]
+fn what_volumes_take_is_mostly_foreseen() {
+    let ball = with_attribute(set_of(fibonacci_sphere(3000)), "s", |_| 1.0);
+    let size = "[image]\nsize = [256, 192]\n";
+    let volume = |more: &str| {
+        format!(
+            "{size}{LIT}[[objects]]\npoints = \"a.ply\"\nvolume = {{ scalar = \"s\", {more} }}\n"
+        )
+    };
+    let stops = "transfer = [{ value = 0.0, color = [1, 1, 1], extinction = 1.0 }]";
+    let refined = format!(
+        "{size}{LIT}[[objects]]\npoints = \"a.ply\"\nsurface = {{ polynomial = \"incomplete\", refine = \"project\" }}\n"
+    );
+    for (text, ran) in [
+        (volume(&format!("radius = 0.3, step = 0.1, {stops}")), "march"),
+        (
+            volume("radius = 0.3, step = 0.1, kernel = \"sum\", mode = \"isosurface\", iso = 0.5"),
+            "isosurface",
+        ),
+        (refined, "refine"),
+    ] {
+        let (count, kernels) = unforeseen(&text, std::slice::from_ref(&ball));
+        assert!(kernels.contains(ran), "{text}: {kernels:?}");
+        assert!(
+            count <= 4,
+            "{text}: {count} pipelines made in the course of the work: {kernels:?}"
+        );
     }
 }

@@ -6,12 +6,16 @@ use crate::interrupt;
 use gpu::{Device, Kernel};
 use plan::Plan;
 use render::Renderer;
-use scene::Scene;
+use scene::{Boundary, Object, Scene};
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::thread::{JoinHandle, available_parallelism};
+use std::thread::{Builder, JoinHandle, available_parallelism};
 
-/// The threads, and what they have yet to do. They end with it, each after the pipeline that it is at.
+/// There are some twenty pipelines, and one takes half of the time.
+const MOST_THREADS: usize = 8;
+
+/// The threads, and what they have yet to do. They end with it, each after the pipeline that it is at: what fails
+/// meanwhile is told after that.
 pub struct Ahead {
     device: Option<Arc<Device>>,
     list: Arc<List>,
@@ -31,24 +35,29 @@ struct State {
 }
 
 impl Ahead {
-    /// One thread a core; none for the CPU reference.
+    /// One thread a core, up to eight; none for the CPU reference, nor where the system has no more.
     pub fn new(engine: &Engine) -> Self {
         let list = Arc::new(List::default());
         let device = match engine {
             Engine::Gpu(device) => Some(Arc::clone(device)),
             Engine::Reference | Engine::ReferenceF64 => None,
         };
-        let count = device.as_ref().map_or(0, |_| available_parallelism().map_or(1, Into::into));
+        let cores = || available_parallelism().map_or(1, Into::into).min(MOST_THREADS);
+        let count = device.as_ref().map_or(0, |_| cores());
         let thread = |_| {
             let list = Arc::clone(&list);
-            std::thread::spawn(move || list.work_off())
+            Builder::new().spawn(move || list.work_off()).ok()
         };
-        Self { device, threads: (0..count).map(thread).collect(), list }
+        Self { device, threads: (0..count).map_while(thread).collect(), list }
     }
 
     /// Adds what the fits of a scene's points will take.
     pub fn fits(&self, scene: &Scene) {
-        let mut neighbors: Vec<_> = scene.objects.iter().map(|it| it.surface.neighbors).collect();
+        let carries_surface = |object: &&Object| {
+            object.volume.as_ref().is_none_or(|volume| volume.boundary != Boundary::None)
+        };
+        let objects = scene.objects.iter().filter(carries_surface);
+        let mut neighbors: Vec<_> = objects.map(|object| object.surface.neighbors).collect();
         neighbors.sort_unstable();
         neighbors.dedup();
         for count in neighbors {
@@ -75,7 +84,7 @@ impl Drop for Ahead {
         self.list.lock().closed = true;
         self.list.changed.notify_all();
         for thread in self.threads.drain(..) {
-            // It panics nowhere; if it did, the work that needs the pipeline would say so.
+            // `make_ahead` panics nowhere; if it did, the work that needs the pipeline would say so.
             let _ = thread.join();
         }
     }
@@ -85,7 +94,9 @@ impl List {
     fn work_off(&self) {
         while let Some(kernel) = self.next() {
             // The pass that uses it says what is wrong with it.
-            let _ = interrupt::beside(|| kernel.make_ahead());
+            if interrupt::beside(|| kernel.make_ahead()).is_none() {
+                return;
+            }
         }
     }
 

@@ -1,7 +1,7 @@
 //! Ctrl-C, SIGTERM and SIGHUP.
 //!
 //! The first signal asks work that looks for it (see [`held`]) to stop; anything else has nothing to
-//! clean up and ends at once. The second signal ends the process at once, but lets a file that is
+//! clean up and ends at once, or as soon as threads [`beside`] it may be cut off. The second signal ends the process at once, but lets a file that is
 //! being written be finished, for two seconds: half-written files are never left behind.
 
 use crate::errors::{Exit, Failure};
@@ -41,16 +41,22 @@ pub fn requested() -> bool {
 
 /// Runs work that ends soon after [`requested`] turns true.
 pub fn held<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
-    let _held = Counted::new(&HELD);
-    let result = work()?;
-    if requested() { Err(Failure::interrupted()) } else { Ok(result) }
+    let held = Counted::new(&HELD);
+    let result = work();
+    if requested() {
+        // It counts to the end, which its caller goes to now: nobody else may end the process meanwhile.
+        std::mem::forget(held);
+        return result.and(Err(Failure::interrupted()));
+    }
+    result
 }
 
 /// Runs short work of a thread beside the one that does what the user asked for: it is not cut off, and ends the process
-/// where an end was asked for meanwhile and no other work will see to it.
-pub fn beside<T>(work: impl FnOnce() -> T) -> T {
+/// where an end was asked for meanwhile and no other work will see to it. `None` once an end was asked for.
+pub fn beside<T>(work: impl FnOnce() -> T) -> Option<T> {
     let held = Counted::new(&HELD);
-    let result = work();
+    // Looked at once it is held: whoever ends the process sees the one or lets this see the other.
+    let result = (!requested()).then(work);
     drop(held);
     if requested() && HELD.load(Ordering::SeqCst) == 0 {
         end();

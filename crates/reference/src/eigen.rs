@@ -1,4 +1,5 @@
-//! Twin of `glsl/shared/eigen.glsl`: cyclic Jacobi rotations of a symmetric 3 × 3 matrix.
+//! Twin of `glsl/shared/eigen.glsl`: cyclic Jacobi rotations of a symmetric 3 × 3 matrix. It makes all sweeps, also
+//! those that turn nothing, which the kernel leaves out: the same result.
 
 use crate::real::{Real, V3};
 

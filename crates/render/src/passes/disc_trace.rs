@@ -23,7 +23,7 @@ pub(crate) struct DiscTraceIo<'a> {
 
 /// The nearest hit of each camera ray among the points of its screen tile (\[T\] §4).
 pub(crate) struct DiscTrace {
-    kernel: Kernel,
+    pub kernel: Kernel,
 }
 
 impl DiscTrace {

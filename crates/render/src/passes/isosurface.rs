@@ -34,8 +34,8 @@ pub(crate) enum Searching<'a> {
 
 /// Where rays first meet a surface on which the scalar of a volume is one number.
 pub(crate) struct Isosurface {
-    wave: Kernel,
-    shadows: Kernel,
+    pub wave: Kernel,
+    pub shadows: Kernel,
 }
 
 impl Isosurface {

@@ -34,9 +34,9 @@ pub(crate) struct MarchIo<'a> {
 
 /// Rays through volumes, sample after sample (\[T\] §6).
 pub(crate) struct March {
-    wave: Kernel,
-    lit: Kernel,
-    shadows: Kernel,
+    pub wave: Kernel,
+    pub lit: Kernel,
+    pub shadows: Kernel,
 }
 
 impl March {

@@ -51,7 +51,7 @@ impl Marks {
 pub(crate) struct ListMarked {
     pub count: Kernel,
     pub list: Kernel,
-    scan: Scan,
+    pub scan: Scan,
 }
 
 impl ListMarked {

@@ -25,7 +25,7 @@ pub(crate) struct RefineIo<'a> {
 /// One iteration of each pending hit towards the point set surface (\[T\] §4), and the way on for
 /// rays whose hit was refined away.
 pub(crate) struct Refine {
-    refine: Kernel,
+    pub refine: Kernel,
     resume: Kernel,
 }
 
