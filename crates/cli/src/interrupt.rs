@@ -1,8 +1,9 @@
 //! Ctrl-C, SIGTERM and SIGHUP.
 //!
 //! The first signal asks work that looks for it (see [`held`]) to stop; anything else has nothing to
-//! clean up and ends at once, or as soon as threads [`beside`] it may be cut off. The second signal ends the process at once, but lets a file that is
-//! being written be finished, for two seconds: half-written files are never left behind.
+//! clean up and ends at once, or as soon as threads [`beside`] it may be cut off. The second signal ends the
+//! process at once, but lets a file that is being written be finished, for two seconds: half-written files are
+//! never left behind.
 
 use crate::errors::{Exit, Failure};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -51,8 +52,8 @@ pub fn held<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> 
     result
 }
 
-/// Runs short work of a thread beside the one that does what the user asked for: it is not cut off, and ends the process
-/// where an end was asked for meanwhile and no other work will see to it. `None` once an end was asked for.
+/// Runs short work of a thread beside the one that does what the user asked for: it is not cut off, and ends the
+/// process where an end was asked for meanwhile and no other work will see to it. `None` once an end was asked for.
 pub fn beside<T>(work: impl FnOnce() -> T) -> Option<T> {
     let held = Counted::new(&HELD);
     // Looked at once it is held: whoever ends the process sees the one or lets this see the other.

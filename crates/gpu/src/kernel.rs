@@ -57,8 +57,8 @@ pub(crate) enum TexelType {
     Uint,
 }
 
-/// A compute kernel. Its pipeline is made when a pass first uses it, or by [`make_ahead`](Self::make_ahead), and then kept by the device for every
-/// kernel like it; cloning gives another handle.
+/// A compute kernel. Its pipeline is made when a pass first uses it, or by [`make_ahead`](Self::make_ahead), and then
+/// kept by the device for every kernel like it; cloning gives another handle.
 #[derive(Clone)]
 pub struct Kernel {
     pub(crate) inner: Arc<KernelInner>,

@@ -12,8 +12,9 @@ use points::device::{Needed, kernels_of_structures};
 use std::sync::Arc;
 
 impl Renderer {
-    /// The kernels that a renderer and a frame of a plan will ask for after the fits, in about that order. Meant to be [made ahead](Kernel::make_ahead) while the fits run; what is missing here, or asked for
-    /// in another form since several grids come of the points, is made when it is needed.
+    /// The kernels that a renderer and a frame of a plan will ask for after the fits, in about that order. Meant to be
+    /// [made ahead](Kernel::make_ahead) while the fits run; what is missing here, or asked for in another form since
+    /// several grids come of the points, is made when it is needed.
     ///
     /// # Errors
     /// A device that is too small for a kernel.
@@ -59,17 +60,21 @@ impl Renderer {
         if is_lit {
             likely.extend([passes.shadow_rays.kernel, passes.shade.kernel]);
         }
-        if (is_lit || scatters) && plan.by_tree() {
+        let points_lit = plan.volumes.any_lit() && !plan.lights.is_empty();
+        if points_lit {
+            likely.extend([passes.point_light.rays, passes.point_light.lights]);
+        }
+        if (is_lit || scatters || points_lit) && plan.by_tree() {
             likely.push(passes.tree_trace.leaving);
         }
-        if is_lit || scatters {
+        if !plan.lights.is_empty() || plan.scatters() {
             let ListMarked { count, list, scan } = passes.list_marked;
             likely.extend([count, list].into_iter().chain(scan.kernels()));
         }
         if plan.volumes.any_marched() {
             let lit = plan.volumes.any_lit();
             likely.push(if lit { passes.march.lit } else { passes.march.wave });
-            likely.extend(is_lit.then_some(passes.march.shadows));
+            likely.extend((is_lit || points_lit).then_some(passes.march.shadows));
         }
         if plan.volumes.any_isosurface() {
             likely.push(passes.isosurface.wave);

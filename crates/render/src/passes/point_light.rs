@@ -25,8 +25,8 @@ pub(crate) struct PointLightIo<'a> {
 
 /// How much of a light reaches the points of a volume: the rays towards it, and what came of them.
 pub(crate) struct PointLight {
-    rays: Kernel,
-    lights: Kernel,
+    pub rays: Kernel,
+    pub lights: Kernel,
 }
 
 impl PointLight {
