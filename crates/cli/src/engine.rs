@@ -77,6 +77,7 @@ pub fn with_engine<T>(
     // Not cut off: a process that ends while a driver starts its threads may crash.
     let engine = interrupt::held(|| Engine::open(args))?;
     let result = work(&engine);
+    interrupt::finished();
     let Engine::Gpu(device) = engine else { return result };
     let instance = Arc::clone(device.instance());
     drop(device);

@@ -65,6 +65,12 @@ pub fn beside<T>(work: impl FnOnce() -> T) -> Option<T> {
     result
 }
 
+/// Says that what the user asked for is done, or has failed: what is left is taking down the driver, in which a process
+/// that ends may crash. A signal changes nothing from now on; the second ends the process all the same.
+pub fn finished() {
+    std::mem::forget(Counted::new(&HELD));
+}
+
 fn end() -> ! {
     film::remove_unfinished();
     std::process::exit(i32::from(Exit::Interrupted.code()))

@@ -107,6 +107,7 @@ fn render(
         });
         files::write_json(path, &row)?;
     }
+    interrupt::finished();
     progress.note(&summary(args, &plan, engine, &frame, [read, built.duration]));
     Ok(())
 }
