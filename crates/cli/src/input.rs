@@ -251,6 +251,9 @@ pub fn read_file(
     let set = points::read_with(path, options, &mut |done, _| progress.done(done))?;
     progress.clear();
     let file = path.display();
+    for note in &set.notes {
+        progress.note(&format!("{file}: {note}"));
+    }
     for (dropped, why) in [
         (set.non_finite, "whose position is infinite or not a number"),
         (set.invalid, "which the file marks as invalid"),

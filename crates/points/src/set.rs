@@ -32,6 +32,9 @@ pub struct PointSet {
     pub filtered_out: u64,
     /// The file format in words, such as `PLY 1.0, binary little-endian`.
     pub format: String,
+    /// What the reader assumed where the file leaves it open, and what it left out, one sentence each,
+    /// without the file's name: `taken for x y z red green blue, since …; --columns says otherwise`.
+    pub notes: Vec<String>,
 }
 
 /// A number that every point has.
@@ -130,6 +133,7 @@ impl PointSet {
             invalid: self.invalid,
             filtered_out: self.filtered_out,
             format: self.format.clone(),
+            notes: self.notes.clone(),
         }
     }
 

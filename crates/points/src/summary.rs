@@ -24,6 +24,8 @@ pub struct PointSummary {
     pub attributes: Vec<(String, Range, Histogram)>,
     /// Median distance to the nearest other point; 0 for duplicates, `None` for a single point.
     pub spacing: Option<f64>,
+    /// What the reader assumed or left out ([`PointSet::notes`]).
+    pub notes: Vec<String>,
 }
 
 /// How many points were dropped, and why.
@@ -76,6 +78,7 @@ impl PointSummary {
             max,
             attributes,
             spacing,
+            notes: set.notes.clone(),
         }
     }
 
@@ -112,6 +115,7 @@ impl PointSummary {
             "origin": self.origin(),
             "attributes": attributes,
             "spacing": self.spacing,
+            "notes": self.notes,
         })
     }
 }
@@ -186,6 +190,9 @@ impl fmt::Display for PointSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let corner = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
         writeln!(f, "format   {}", self.format)?;
+        for note in &self.notes {
+            writeln!(f, "note     {note}")?;
+        }
         match self.filtered_out {
             0 => writeln!(f, "points   {}", self.points)?,
             out => writeln!(f, "points   {} of {}", self.points, self.points + out)?,
@@ -261,6 +268,7 @@ mod tests {
             "bounds": { "min": [0.5, -2.0, 0.1], "max": [1.0, 4.0, 636_001.76] },
             "origin": [0.75, 1.0, 318_000.93],
             "spacing": 0.25,
+            "notes": [],
         });
         let mut others = json.clone();
         let attributes = others.as_object_mut().unwrap().remove("attributes").unwrap();
