@@ -323,15 +323,16 @@ pub fn assert_same_film(name: &str, a: &Film, b: &Film) {
     }
 }
 
-/// A file of the shared test data, or `None`, said loudly, where the folder is missing.
+/// A file of the collected test data, whose folder `POINTILLIST_DATA` names, or `None`, said loudly, where it is
+/// missing.
 #[must_use]
 pub fn shared_data(file: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data").join(file);
-    if path.exists() {
-        return Some(path);
+    let folder = std::env::var_os("POINTILLIST_DATA").map(PathBuf::from);
+    let path = folder.map(|folder| folder.join(file)).filter(|path| path.exists());
+    if path.is_none() {
+        said(&format!("SKIPPED: {file}: POINTILLIST_DATA names no folder with it"));
     }
-    said(&format!("SKIPPED: {file}: {} is missing", path.display()));
-    None
+    path
 }
 
 /// A line that is seen although the test passes: the test runner swallows what eprintln! prints.
