@@ -300,8 +300,15 @@ impl<'f> SideBySide<'f> {
 
 /// What is wrong with the bytes of an array: they are damaged, or cannot be read.
 pub(crate) fn data_error(path: &Path, name: &str, error: io::Error) -> PointsError {
-    use io::ErrorKind::{InvalidData, InvalidInput, UnexpectedEof};
+    use io::ErrorKind::{InvalidData, InvalidInput, UnexpectedEof, Unsupported};
     match error.kind() {
+        Unsupported => PointsError::wrong(
+            path,
+            &format!("the data of '{}'", printable(name)),
+            error,
+            "what is read of its format",
+            "save it with another compression, or without",
+        ),
         InvalidData | InvalidInput | UnexpectedEof => PointsError::wrong(
             path,
             &format!("the data of '{}'", printable(name)),

@@ -1,4 +1,8 @@
-//! LAS and LAZ files, versions 1.0 to 1.4, point formats 0 to 10.
+//! LAS and LAZ files, versions 1.0 to 1.5, point formats 0 to 10.
+//!
+//! Version 1.5 adds three numbers about GPS times to the header and no longer has the counts of 32
+//! bits; its points are those of version 1.4. Times come as they are stored, without the offset that
+//! the header may name.
 //!
 //! The reader is our own; LAZ is decompressed by the crate `laz`. Coordinates are the stored
 //! integers times their scale plus their offset, in f64. Points marked as withheld come too, like
@@ -19,7 +23,7 @@ use std::path::Path;
 
 /// Bytes of the header that all versions have.
 const HEADER: u64 = 227;
-/// Bytes of the header of version 1.4.
+/// Bytes of the header of version 1.4; later ones only add to it.
 const HEADER_1_4: u64 = 375;
 /// Bytes before the contents of a variable length record, and of an extended one.
 const VLR_HEADER: u64 = 54;
@@ -30,6 +34,8 @@ const MAX_RECORDS: u32 = 1 << 12;
 const BLOCK: usize = 1 << 20;
 
 const EXPORT: &str = "the file is damaged: copy or export it again";
+/// Of what others read.
+const CONVERT: &str = "convert it to LAS 1.4, for example with PDAL or las2las";
 
 pub(crate) fn sniff(start: &[u8]) -> bool {
     start.starts_with(b"LASF")
@@ -72,14 +78,13 @@ pub(crate) fn read(
     let header = Header::read(&mut file, path)?;
     let records = header.variable_records(&mut file, path)?;
     let known = record::length_of(header.format);
-    let extra = records
-        .iter()
-        .find(|record| record.is("LASF_Spec", extra::RECORD_ID))
+    let described = records.iter().filter(|record| record.is("LASF_Spec", extra::RECORD_ID));
+    let described: Vec<Vec<u8>> = described
+        .take(extra::MAX_RECORDS)
         .map(|record| file.bytes_at(record.place, record.length.min(extra::MAX_BYTES)))
-        .transpose()
-        .map_err(io_error)?
-        .unwrap_or_default();
-    let extra = extra::fields(&extra, known, header.record_length.into());
+        .collect::<Result<_, _>>()
+        .map_err(io_error)?;
+    let extra = extra::of_records(&described, known, header.record_length.into());
     let layout = record::Layout::new(&header, extra);
 
     let mut collector = Collector::new(layout.fields(), path, options)?;
@@ -175,11 +180,11 @@ impl Header {
         };
 
         let version = [bytes[24], bytes[25]];
-        if version[0] != 1 || version[1] > 4 {
+        if version[0] != 1 || version[1] > 5 {
             let found = format!("{}.{}", version[0], version[1]);
-            return Err(wrong("the version", found, "1.0 to 1.4"));
+            return Err(PointsError::wrong(path, "the version", found, "1.0 to 1.5", CONVERT));
         }
-        let is_1_4 = version[1] == 4;
+        let is_1_4 = version[1] >= 4;
         let header_size = u16_at(94);
         let least = if is_1_4 { HEADER_1_4 } else { HEADER };
         if u64::from(header_size) < least || file.length() < least {
@@ -189,7 +194,7 @@ impl Header {
         // The highest bit says LAZ; the next was used by early versions of LASzip.
         let (format, compressed) = (bytes[104] & 0x3f, bytes[104] & 0xc0 != 0);
         if format > 10 {
-            return Err(wrong("the point format", format.to_string(), "0 to 10"));
+            return Err(PointsError::wrong(path, "the point format", format, "0 to 10", CONVERT));
         }
         let record_length = u16_at(105);
         let least = record::length_of(format);

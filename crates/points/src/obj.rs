@@ -1,6 +1,7 @@
 //! Wavefront OBJ: its vertices are the points.
 //!
-//! A vertex is `v x y z`, then a weight, a colour, or both. Normals belong to corners of faces, not
+//! A vertex is `v x y z`, then a weight, a colour, or both; some vertices may have a colour and others
+//! none, which get that of objects without colours. Normals belong to corners of faces, not
 //! to vertices; they are taken for the vertices' where there are as many of them and no face says
 //! otherwise, and are left out elsewhere, which `format` says. Of faces nothing else is read.
 
@@ -18,6 +19,9 @@ use std::path::Path;
 /// What lines above the vertices begin with.
 const KEYWORDS: [&[u8]; 10] =
     [b"v", b"vn", b"vt", b"vp", b"f", b"o", b"g", b"s", b"mtllib", b"usemtl"];
+
+/// The linear colour of vertices without one, where others have: that of objects without colours.
+const NO_COLOR: f32 = 0.8;
 
 const EXPECTED: &str = "3, 4, 6 or 7 values: x y z, then a weight, a colour, or both";
 
@@ -40,13 +44,44 @@ pub(crate) fn read(
     path: &Path,
     options: &ReadOptions,
 ) -> Result<PointSet, PointsError> {
-    let start =
-        source.fill(SAMPLE).map_err(|source| PointsError::Io { path: path.into(), source })?;
-    let sample = sample(start);
-    let fields = fields(&sample);
+    let io_error = |source| PointsError::Io { path: path.into(), source };
+    let mut sample = sample(source.fill(SAMPLE).map_err(io_error)?);
+    loop {
+        match read_as(&mut source, &sample, path, options) {
+            // The first megabyte was without the colours that came then.
+            Err(Failed::FirstColor(row, _)) if source.rewind().map_err(io_error)? => {
+                sample = Sample { columns: row.len(), floats: vec![true; row.len()], values: row };
+            }
+            Err(Failed::FirstColor(_, error) | Failed::Points(error)) => return Err(error),
+            Ok(set) => return Ok(set),
+        }
+    }
+}
+
+/// Why vertices cannot be read as those of the sample.
+enum Failed {
+    /// This one is the first with a colour.
+    FirstColor(Vec<f64>, PointsError),
+    Points(PointsError),
+}
+
+impl From<PointsError> for Failed {
+    fn from(error: PointsError) -> Self {
+        Self::Points(error)
+    }
+}
+
+/// Reads vertices that are like those of the sample.
+fn read_as(
+    source: &mut Source<'_>,
+    sample: &Sample,
+    path: &Path,
+    options: &ReadOptions,
+) -> Result<PointSet, Failed> {
+    let fields = fields(sample);
     let mut collector = Collector::new(&fields, path, options)?;
     let mut vertices = Vertices::of(&fields, options);
-    let mut lines = Lines::new(&mut source, path)?;
+    let mut lines = Lines::new(source, path)?;
     // A line that goes on in the next one, without the backslash.
     let mut joined = Vec::new();
     while let Some(line) = lines.next()? {
@@ -58,7 +93,8 @@ pub(crate) fn read(
                 continue;
             }
             (Some(_), _) => {
-                return Err(lines.wrong(format!("more than {SAMPLE} bytes"), "a shorter line"));
+                let found = format!("more than {SAMPLE} bytes");
+                return Err(lines.wrong(found, "a shorter line").into());
             }
             (None, false) => {
                 joined.extend_from_slice(line);
@@ -68,20 +104,28 @@ pub(crate) fn read(
         match vertices.see(line) {
             Ok(true) => collector.push(&vertices.row)?,
             Ok(false) => (),
-            Err((found, expected)) => return Err(lines.wrong(found, expected)),
+            Err((found, expected)) => {
+                let error = lines.wrong(found, expected);
+                return Err(match vertices.row.len() == vertices.columns + 3 {
+                    true => Failed::FirstColor(vertices.row, error),
+                    false => error.into(),
+                });
+            }
         }
         joined.clear();
     }
-    let Vertices { found: vertices, normals, .. } = vertices;
+    let Vertices { found: vertices, normals, uncolored, .. } = vertices;
     if vertices == 0 {
-        return Err(PointsError::Missing {
+        let error = PointsError::Missing {
             path: path.into(),
             missing: "vertex".to_owned(),
             place: "in lines that begin with 'v'".to_owned(),
             help: "export the points as vertices",
-        });
+        };
+        return Err(error.into());
     }
     let mut set = collector.finish("OBJ")?;
+    give_no_color(&mut set, &uncolored, vertices);
     let normals = normals.give_to(&mut set, vertices);
     set.format += &normals;
     Ok(set)
@@ -95,6 +139,9 @@ struct Vertices {
     found: u64,
     normals: Normals,
     wants_normals: bool,
+    wants_colors: bool,
+    /// Those without a colour, where others have one.
+    uncolored: Vec<u32>,
 }
 
 impl Vertices {
@@ -105,6 +152,8 @@ impl Vertices {
             found: 0,
             normals: Normals::default(),
             wants_normals: options.wanted.normals(),
+            wants_colors: options.wanted.colors(),
+            uncolored: Vec::new(),
         }
     }
 
@@ -117,6 +166,14 @@ impl Vertices {
                 numbers(words, &mut self.row)?;
                 match self.row.len() {
                     count if count == self.columns => (),
+                    count @ (3 | 4) if count + 3 == self.columns => {
+                        self.row.resize(self.columns, 0.0);
+                        if let Some(place) =
+                            u32::try_from(self.found).ok().filter(|_| self.wants_colors)
+                        {
+                            self.uncolored.push(place);
+                        }
+                    }
                     3 | 4 | 6 | 7 => {
                         let expected = format!("{} as in the first vertex", values(self.columns));
                         return Err((values(self.row.len()), expected));
@@ -137,6 +194,20 @@ impl Vertices {
     }
 }
 
+/// Gives vertices without a colour that of objects without any, and says how many there are.
+fn give_no_color(set: &mut PointSet, uncolored: &[u32], vertices: u64) {
+    let Some(colors) = set.colors.as_mut().filter(|_| !uncolored.is_empty()) else { return };
+    for (color, index) in colors.iter_mut().zip(&set.file_index) {
+        if uncolored.binary_search(index).is_ok() {
+            *color = [NO_COLOR; 3];
+        }
+    }
+    set.notes.push(format!(
+        "{} of {vertices} vertices have no colour and get that of objects without colours, {NO_COLOR}",
+        uncolored.len()
+    ));
+}
+
 /// The fields of a vertex, by how many numbers the first has, and what colours look like.
 fn fields(sample: &Sample) -> Vec<Field> {
     let color = ["red", "green", "blue"];
@@ -153,7 +224,8 @@ fn fields(sample: &Sample) -> Vec<Field> {
     }
 }
 
-/// The first vertices. Whole numbers up to 1 are fractions, as the format has it.
+/// The first vertices, and of those with a colour only these. Whole numbers up to 1 are fractions,
+/// as the format has it.
 fn sample(start: &[u8]) -> Sample {
     let mut sample = Sample::default();
     let mut row = Vec::new();
@@ -163,18 +235,20 @@ fn sample(start: &[u8]) -> Sample {
         if words.next() != Some(b"v") || numbers(words, &mut row).is_err() {
             continue;
         }
-        if sample.columns == 0 {
-            sample.columns = row.len();
-            sample.floats = vec![true; row.len()];
+        if sample.columns == 0 || (sample.columns < 5 && row.len() == sample.columns + 3) {
+            sample =
+                Sample { columns: row.len(), floats: vec![true; row.len()], ..Sample::default() };
+            rows = 0;
         }
         if row.len() == sample.columns {
             sample.values.extend(&row);
             rows += 1;
         }
-        if rows == SAMPLE_ROWS {
+        if rows == SAMPLE_ROWS && sample.columns > 5 {
             break;
         }
     }
+    sample.values.truncate(SAMPLE_ROWS * sample.columns);
     sample
 }
 
@@ -285,6 +359,25 @@ mod tests {
         let set = read("v 1 2 3 1 255 128 0\n");
         assert_eq!(set.attribute("w"), Some(&Values::F64(vec![1.0])));
         assert_eq!(set.color_encoding, Some(ColorEncoding::Srgb8));
+    }
+
+    /// Of the vertices of several objects, some may have been painted.
+    #[test]
+    fn vertices_without_a_color_among_others_get_that_of_objects_without() {
+        let set = read("v 1 2 3\nv 4 5 6 0.25 0 1\nv nan 0 0\nv 7 8 9\n");
+        assert_eq!(set.colors, Some(vec![[0.8; 3], [0.25, 0.0, 1.0], [0.8; 3]]));
+        let note = "3 of 4 vertices have no colour and get that of objects without colours, 0.8";
+        assert_eq!(set.notes, [note]);
+        let set = read("v 1 2 3 1 255 128 0\nv 4 5 6 0.5\n");
+        assert_eq!(set.color_encoding, Some(ColorEncoding::Srgb8));
+        assert_eq!(set.colors.as_ref().unwrap()[1], [0.8; 3]);
+        assert_eq!(set.attribute("w"), Some(&Values::F64(vec![1.0, 0.5])));
+        assert_eq!(read("v 1 2 3 1 1 0\n").notes, [""; 0]);
+        // The first colour may come after the part that is looked at.
+        let plain = "v 1 2 3\n".repeat(SAMPLE / 8 + 10);
+        let set = read(plain + "v 4 5 6 0.25 0 1\n");
+        assert_eq!(set.colors.as_ref().unwrap()[SAMPLE / 8 + 9..], [[0.8; 3], [0.25, 0.0, 1.0]]);
+        assert_eq!(set.len(), SAMPLE / 8 + 11);
     }
 
     #[test]

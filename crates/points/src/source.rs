@@ -17,6 +17,8 @@ pub(crate) struct Source<'a> {
     end: usize,
     /// Bytes read from the file so far.
     read: u64,
+    /// Bytes read before it was begun again.
+    before: u64,
 }
 
 /// Where bytes come from.
@@ -80,7 +82,7 @@ impl<'a> Source<'a> {
         // A small file needs no large buffer; one byte more, to meet the end at once.
         let known = length.and_then(|length| usize::try_from(length).ok()).unwrap_or(BLOCK);
         let buffer = vec![0; known.clamp(63, BLOCK - 1) + 1];
-        Self { file, length, progress, buffer, start: 0, end: 0, read: 0 }
+        Self { file, length, progress, buffer, start: 0, end: 0, read: 0, before: 0 }
     }
 
     /// The whole file, to be read from any place, whatever was consumed of it.
@@ -107,6 +109,15 @@ impl<'a> Source<'a> {
             farthest: self.read,
             passes: None,
         })
+    }
+
+    /// Goes back to the beginning, and says whether it can.
+    pub(crate) fn rewind(&mut self) -> io::Result<bool> {
+        let Bytes::File(file) = &mut self.file else { return Ok(false) };
+        file.rewind()?;
+        self.before = self.read;
+        (self.start, self.end, self.read) = (0, 0, 0);
+        Ok(true)
     }
 
     /// Bytes of the file that are not consumed, where its length is known.
@@ -141,7 +152,7 @@ impl<'a> Source<'a> {
                     Ok(count) => {
                         self.end += count;
                         self.read += count as u64;
-                        (self.progress)(self.read, self.length.unwrap_or(0));
+                        (self.progress)(self.read.max(self.before), self.length.unwrap_or(0));
                     }
                     Err(error) if error.kind() == io::ErrorKind::Interrupted => (),
                     Err(error) => return Err(error),

@@ -1,4 +1,7 @@
-//! Extra bytes: numbers beyond those of a point format, which a variable length record describes.
+//! Extra bytes: numbers beyond those of a point format, which variable length records describe.
+//!
+//! One record should describe all of them, but programs that add a number to a file add a record of
+//! their own, plain or extended.
 
 use crate::field::{Field, Type};
 
@@ -6,8 +9,10 @@ use crate::field::{Field, Type};
 pub(super) const RECORD_ID: u16 = 4;
 /// Bytes of a description.
 const DESCRIPTION: usize = 192;
-/// Bytes of all descriptions that are read.
+/// Bytes of a record that are read.
 pub(super) const MAX_BYTES: u64 = 1 << 20;
+/// Records that are read.
+pub(super) const MAX_RECORDS: usize = 16;
 
 /// Bits of a description's options.
 const HAS_SCALE: u8 = 1 << 3;
@@ -42,9 +47,35 @@ impl Extra {
     }
 }
 
+/// The extra numbers that several records describe, one record after the other. Where that is more
+/// than a point has, and the last record that does so describes all by itself, a program has
+/// written the description anew and left the old one in place.
+pub(super) fn of_records(records: &[Vec<u8>], first: usize, end: usize) -> Vec<Extra> {
+    let bytes = |record: &Vec<u8>| record.chunks_exact(DESCRIPTION).map(size_of).sum::<usize>();
+    let extra = end - first;
+    let replaces = |record: &&Vec<u8>| bytes(record) == extra;
+    if records.iter().map(bytes).sum::<usize>() > extra
+        && let Some(last) = records.iter().rev().find(replaces)
+    {
+        return fields(last, first, end);
+    }
+    // A record cut off within a description says nothing there.
+    let whole = |record: &Vec<u8>| record[..record.len() / DESCRIPTION * DESCRIPTION].to_vec();
+    fields(&records.iter().flat_map(whole).collect::<Vec<u8>>(), first, end)
+}
+
+/// Bytes of a point that a description is about.
+fn size_of(description: &[u8]) -> usize {
+    match usize::from(description[2]) {
+        0 => description[3].into(),
+        kind @ 1..=30 => TYPES[(kind - 1) % 10].size() * ((kind - 1) / 10 + 1),
+        _ => 0,
+    }
+}
+
 /// The extra numbers that are described and lie within a record, whose own bytes end at `first` and
 /// which ends at `end`.
-pub(super) fn fields(descriptions: &[u8], first: usize, end: usize) -> Vec<Extra> {
+fn fields(descriptions: &[u8], first: usize, end: usize) -> Vec<Extra> {
     let mut fields = Vec::new();
     let mut place = first;
     for description in descriptions.chunks_exact(DESCRIPTION) {

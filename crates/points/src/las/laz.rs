@@ -19,6 +19,9 @@ use std::path::Path;
 
 /// Of the record that says how points are compressed.
 pub(super) const RECORD_ID: u16 = LazVlr::RECORD_ID;
+/// Of what LASzip itself may read.
+const DECOMPRESS: &str =
+    "if other programs read the file, decompress it with laszip, else export it again";
 /// Points that a byte may hold at most: real files have less than one.
 const POINTS_A_BYTE: u64 = 32;
 /// A small file may hold this many whatever its length.
@@ -42,10 +45,13 @@ pub(super) fn read(
         let found = format!("{} in {length} bytes", header.points);
         return Err(wrong("the number of points", found, "no more than LAZ could hold"));
     }
+    let unread = |found: String, expected: &str| {
+        PointsError::wrong(path, "the LASzip record", found, expected, DECOMPRESS)
+    };
     let vlr = LazVlr::from_buffer(vlr)
-        .map_err(|error| wrong("the LASzip record", error.to_string(), "one that can be read"))?;
+        .map_err(|error| unread(error.to_string(), "one that can be read"))?;
     check_items(&vlr, header)
-        .map_err(|found| wrong("the LASzip record", found, "the items of the point format"))?;
+        .map_err(|found| unread(found, "the items of the point format, in a known version"))?;
 
     let mut points = Points { header, taken: 0, take };
     let result = guarded(|| {
@@ -77,7 +83,9 @@ pub(super) fn read(
 /// found.
 fn check_items(vlr: &LazVlr, header: &Header) -> Result<(), String> {
     let items = vlr.items();
-    let described = |item: &LazItem| format!("{:?} of {} bytes", item.item_type(), item.size());
+    let described = |item: &LazItem| {
+        format!("{:?} of {} bytes, version {}", item.item_type(), item.size(), item.version())
+    };
     let found = || items.iter().map(described).collect::<Vec<_>>().join(", ");
     let layered = header.format >= 6;
     let mut expected = Vec::new();

@@ -92,7 +92,7 @@ impl Made {
     }
 
     fn file(&self) -> Vec<u8> {
-        let size: u16 = if self.minor == 4 { 375 } else { 227 };
+        let size: u16 = [227, 227, 227, 235, 375, 393][usize::from(self.minor)];
         let mut header = vec![0; size.into()];
         let mut put = |place: usize, bytes: &[u8]| {
             header[place..place + bytes.len()].copy_from_slice(bytes);
@@ -158,12 +158,12 @@ fn variable_record(user: &str, id: u16, contents: &[u8]) -> Vec<u8> {
     record
 }
 
-/// A file with variable length records of its own before its points.
+/// A plain file with one more variable length record before its points.
 fn with_record(mut file: Vec<u8>, record: &[u8]) -> Vec<u8> {
     let size = u16::from_le_bytes([file[94], file[95]]);
-    let data = u32::from(size) + record.len() as u32;
+    let data = u32::from_le_bytes([file[96], file[97], file[98], file[99]]) + record.len() as u32;
     file[96..100].copy_from_slice(&data.to_le_bytes());
-    file[100] = 1;
+    file[100] = file[100].wrapping_add(1);
     let points = file.split_off(size.into());
     [file, record.to_vec(), points].concat()
 }
@@ -220,10 +220,19 @@ fn every_point_format_is_read_plain_and_compressed() {
 
 #[test]
 fn every_version_has_its_count() {
-    for minor in 0..=4 {
+    for minor in 0..=5 {
         let file = Made { minor, ..Made::plain(1, 5) }.file();
         let set = read(&file).unwrap();
         assert_eq!((set.len(), set.format), (5, format!("LAS 1.{minor}, point format 1")));
+    }
+    // Times are given as they are stored, whatever offset the header of version 1.5 has.
+    for compression in [Compression::None, Compression::Chunks(3)] {
+        let mut file = Made { minor: 5, compression, ..Made::plain(7, 5) }.file();
+        file[6] = 1 << 6;
+        file[391..393].copy_from_slice(&1500u16.to_le_bytes());
+        let set = read(&file).unwrap();
+        assert_eq!(set.attribute("gps_time").unwrap().get(4), 1e6 + 4.0);
+        assert_eq!(set.colors.map(|colors| colors.len()), Some(5));
     }
     // Version 1.4 may leave the count where older versions have it.
     let mut old_place = Made { minor: 4, ..Made::plain(1, 5) }.file();
@@ -232,16 +241,62 @@ fn every_version_has_its_count() {
     assert_eq!(read(&old_place).unwrap().len(), 4);
 }
 
+/// A file of version 1.4 or later with an extended record behind its points.
+fn with_extended(mut file: Vec<u8>, id: u16, contents: &[u8]) -> Vec<u8> {
+    let place = file.len() as u64;
+    file[235..243].copy_from_slice(&place.to_le_bytes());
+    file[243..247].copy_from_slice(&1u32.to_le_bytes());
+    let mut record = vec![0; 60];
+    record[2..11].copy_from_slice(b"LASF_Spec");
+    record[18..20].copy_from_slice(&id.to_le_bytes());
+    record[20..28].copy_from_slice(&(contents.len() as u64).to_le_bytes());
+    [file, record, contents.to_vec()].concat()
+}
+
+fn describe(kind: u8, options: u8, name: &str, scale: f64, offset: f64) -> Vec<u8> {
+    let mut bytes = vec![0; 192];
+    bytes[2..4].copy_from_slice(&[kind, options]);
+    bytes[4..4 + name.len()].copy_from_slice(name.as_bytes());
+    bytes[112..120].copy_from_slice(&scale.to_le_bytes());
+    bytes[136..144].copy_from_slice(&offset.to_le_bytes());
+    bytes
+}
+
+/// Programs that add a number to a file add a record of their own: `Deviation` of 16 bits, then
+/// `confidence` of 8. A record that describes all three bytes by itself replaces the others.
+#[test]
+fn extra_bytes_of_several_records_are_all_read() {
+    let (deviation, confidence) =
+        (describe(3, 0, "Deviation", 0.0, 0.0), describe(1, 0, "confidence", 0.0, 0.0));
+    let both = [&deviation[..], &confidence[..]].concat();
+    let record = |contents: &[u8]| variable_record("LASF_Spec", 4, contents);
+    for compression in [Compression::None, Compression::Chunks(2)] {
+        let file = Made { extra: 3, compression, ..Made::plain(6, 3) }.file();
+        let mut files = vec![with_extended(file.clone(), 4, &both)];
+        if compression == Compression::None {
+            // Records stand in the order in which they were added.
+            let two =
+                with_record(with_record(file.clone(), &record(&confidence)), &record(&deviation));
+            files.push(two);
+            files.push(with_extended(
+                with_record(file.clone(), &record(&deviation)),
+                4,
+                &confidence,
+            ));
+            files.push(with_record(with_record(file, &record(&both)), &record(&deviation)));
+        }
+        for file in files {
+            let set = read(&file).unwrap();
+            let values = Values::U16(vec![0, 0x0101, 0x0202]);
+            assert_eq!(set.attribute("Deviation"), Some(&values), "{compression:?}");
+            assert_eq!(set.attribute("confidence"), Some(&Values::U8(vec![0, 1, 2])));
+            assert_eq!(set.attribute("Deviation_2"), None);
+        }
+    }
+}
+
 #[test]
 fn extra_bytes_have_the_names_types_and_scales_of_their_description() {
-    let describe = |kind: u8, options: u8, name: &str, scale: f64, offset: f64| {
-        let mut bytes = vec![0; 192];
-        bytes[2..4].copy_from_slice(&[kind, options]);
-        bytes[4..4 + name.len()].copy_from_slice(name.as_bytes());
-        bytes[112..120].copy_from_slice(&scale.to_le_bytes());
-        bytes[136..144].copy_from_slice(&offset.to_le_bytes());
-        bytes
-    };
     let descriptions = [
         describe(1, 0, "amplitude", 9.0, 9.0),
         describe(2, 1 << 3 | 1 << 4, "height", 0.5, 10.0),
@@ -269,7 +324,7 @@ fn damaged_headers_say_what_is_wrong() {
     };
     let huge = u32::MAX.to_le_bytes();
     for (message, expected) in [
-        (with(24, &[2]), "found 2.2 as the version, expected 1.0 to 1.4"),
+        (with(24, &[2]), "found 2.2 as the version, expected 1.0 to 1.5; convert it"),
         (with(25, &[7]), "found 1.7 as the version"),
         (with(25, &[4]), "found 227 bytes of 397 as the size of the header, expected at least 375"),
         (with(94, &[9, 0]), "found 9 bytes of 397 as the size of the header"),

@@ -5,14 +5,16 @@
 //! unpacked as far as it is asked for.
 
 use crate::columns::fill;
+use flate2::Crc;
 use flate2::read::ZlibDecoder;
 use lzma_rust2::XzReader;
 use std::io::{self, BufRead, Cursor, Read};
 
 /// Longest block of LZ4, which is unpacked as a whole.
 const MAX_LZ4_BLOCK: u64 = 1 << 24;
-/// Most memory for unpacking LZMA, in units of 1024 bytes.
-const MAX_LZMA_MEMORY: u32 = 40 << 10;
+/// Most memory for unpacking LZMA, in units of 1024 bytes: the dictionary of the highest preset, and
+/// what comes with it. A block asks for no more than its own length.
+const MAX_LZMA_MEMORY: u32 = (64 << 10) + 256;
 
 /// How blocks are packed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,6 +64,14 @@ struct Blocks {
 
 fn damaged(message: impl Into<String>) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, message.into())
+}
+
+/// Packed in a way that is sound but not read.
+fn unread(error: &io::Error) -> io::Error {
+    let message = format!(
+        "LZMA blocks with a dictionary beyond 64 MiB, or of a kind that is not read ({error})"
+    );
+    io::Error::new(io::ErrorKind::Unsupported, message)
 }
 
 impl<R: Read> Packed<R> {
@@ -140,9 +150,13 @@ impl<R: Read> Read for Packed<R> {
                     blocks.left = length;
                 }
                 let wanted = short(blocks.left);
-                let count = fill(&mut blocks.block, &mut buffer[..wanted]).map_err(|error| {
-                    damaged(format!("a block that cannot be unpacked: {error}"))
-                })?;
+                let count =
+                    fill(&mut blocks.block, &mut buffer[..wanted]).map_err(|error| match error
+                        .kind()
+                    {
+                        io::ErrorKind::OutOfMemory | io::ErrorKind::Unsupported => unread(&error),
+                        _ => damaged(format!("a block that cannot be unpacked: {error}")),
+                    })?;
                 if count < wanted {
                     return Err(damaged("a block that is shorter than its length"));
                 }
@@ -159,6 +173,8 @@ fn open(bytes: Vec<u8>, packing: Option<Packing>, length: u64) -> io::Result<Box
         None => Box::new(Cursor::new(bytes)),
         Some(Packing::Zlib) => Box::new(ZlibDecoder::new(Cursor::new(bytes))),
         Some(Packing::Lzma) => {
+            let mut bytes = bytes;
+            needed_dictionary(&mut bytes, length);
             Box::new(XzReader::new_mem_limit(Cursor::new(bytes), false, MAX_LZMA_MEMORY))
         }
         Some(Packing::Lz4) => {
@@ -169,6 +185,54 @@ fn open(bytes: Vec<u8>, packing: Option<Packing>, length: u64) -> io::Result<Box
             Box::new(Cursor::new(unpacked.map_err(|error| damaged(error.to_string()))?))
         }
     })
+}
+
+/// Lowers the dictionary of a block of LZMA to what `length` unpacked bytes can refer to.
+///
+/// The dictionary is memory that a decoder asks for at once: 64 MiB by the highest preset, however
+/// short the block is, and every array of a file has a decoder. The format is that of xz: a header of
+/// 12 bytes, then that of the first block with its own length, flags, lengths, filters and checksum.
+fn needed_dictionary(bytes: &mut [u8], length: u64) {
+    const STREAM: usize = 12;
+    const LZMA2: u8 = 0x21;
+    let Some(&words) = bytes.get(STREAM).filter(|&&words| words > 0) else { return };
+    let Some(header) = bytes.get_mut(STREAM..STREAM + 4 * (usize::from(words) + 1)) else { return };
+    let (header, checksum) = header.split_at_mut(header.len() - 4);
+    if checksum_of(header).to_le_bytes() != *checksum {
+        return; // damaged, which unpacking finds
+    }
+    let mut place = 2;
+    let mut number = |header: &[u8]| {
+        while header.get(place).is_some_and(|byte| byte & 0x80 != 0) {
+            place += 1;
+        }
+        place += 1;
+        place
+    };
+    // One filter, which must be the last; before it, the lengths that there are.
+    let flags = header[1];
+    for bit in [0x40, 0x80] {
+        if flags & bit != 0 {
+            number(header);
+        }
+    }
+    let end = number(header);
+    let is_lzma = header.get(end - 1..=end) == Some(&[LZMA2, 1]);
+    let Some(dictionary) = header.get_mut(end + 1).filter(|_| flags & 3 == 0 && is_lzma) else {
+        return;
+    };
+    // 4096, 6144, 8192, 12288, …
+    let size = |code: u8| (2 | u64::from(code & 1)) << (code / 2 + 11);
+    let Some(enough) = (0..40).find(|&code| size(code) >= length) else { return };
+    *dictionary = enough.min(*dictionary);
+    let sum = checksum_of(header);
+    checksum.copy_from_slice(&sum.to_le_bytes());
+}
+
+fn checksum_of(bytes: &[u8]) -> u32 {
+    let mut crc = Crc::new();
+    crc.update(bytes);
+    crc.sum()
 }
 
 /// Bytes in base64. Blanks between the signs are passed over, and after the padding that ends one
@@ -257,6 +321,8 @@ impl<R: BufRead> Read for Base64<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use lzma_rust2::{XzOptions, XzWriter};
+    use std::io::Write;
 
     fn decoded(text: &str) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
@@ -283,6 +349,41 @@ mod tests {
 
     fn words(words: &[u32]) -> Vec<u8> {
         words.iter().flat_map(|word| word.to_le_bytes()).collect()
+    }
+
+    /// A block asks for no more memory than it has bytes, whatever the preset; a dictionary beyond
+    /// that of the highest is refused by name.
+    #[test]
+    fn every_preset_of_lzma_is_read() {
+        let contents: Vec<u8> = (0..10_000u32).flat_map(|i| (i * i % 251).to_le_bytes()).collect();
+        let length = contents.len() as u32;
+        let packed = |options: XzOptions| {
+            let mut writer = XzWriter::new(Vec::new(), options).unwrap();
+            writer.write_all(&contents).unwrap();
+            writer.finish().unwrap()
+        };
+        let block =
+            |bytes: &[u8]| [words(&[1, length, 0, bytes.len() as u32]), bytes.to_vec()].concat();
+        for preset in 0..=9 {
+            let bytes = packed(XzOptions::with_preset(preset));
+            let found = unpacked(&block(&bytes), length.into(), Some(Packing::Lzma)).unwrap();
+            assert!(found == contents, "preset {preset}");
+            let mut lowered = bytes.clone();
+            needed_dictionary(&mut lowered, length.into());
+            // 4096 is code 0, and 49152 is the first that holds 40 000 bytes.
+            assert_eq!(lowered[12 + 4], 7.min(bytes[12 + 4]), "preset {preset}");
+        }
+        let mut options = XzOptions::with_preset(0);
+        options.lzma_options.dict_size = 1 << 27;
+        let bytes = packed(options);
+        let mut claim = block(&bytes);
+        claim[4..8].copy_from_slice(&(1u32 << 30).to_le_bytes());
+        let error = unpacked(&claim, length.into(), Some(Packing::Lzma)).unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::Unsupported);
+        assert!(error.to_string().contains("a dictionary beyond 64 MiB"), "{error}");
+        for cut in 0..bytes.len() {
+            needed_dictionary(&mut bytes[..cut].to_vec(), 10);
+        }
     }
 
     #[test]
