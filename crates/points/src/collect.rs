@@ -4,21 +4,18 @@
 //! is decided here, once, by the names and types of the fields; the filter is applied here, before
 //! anything is kept.
 
+use crate::color::{self, Color, Verdict};
 use crate::error::PointsError;
-use crate::field::{Field, Type};
+use crate::field::Field;
 use crate::filter::Sieve;
+use crate::names;
 use crate::options::ReadOptions;
-use crate::set::{Attribute, ColorEncoding, PointSet, Values};
+use crate::set::{Attribute, PointSet, Values};
 use std::collections::{HashMap, HashSet, TryReserveError};
 use std::path::Path;
 
 /// Names of a position, in any letter case.
 const POSITION: [&str; 3] = ["x", "y", "z"];
-/// Names that exporters give to the three numbers of a colour, in any letter case.
-const COLOR: [[&str; 3]; 3] =
-    [["red", "green", "blue"], ["r", "g", "b"], ["diffuse_red", "diffuse_green", "diffuse_blue"]];
-/// Names of a colour in one number, 0xAARRGGBB, of 32 bits.
-const PACKED_COLOR: [&str; 2] = ["rgb", "rgba"];
 /// Names that exporters give to the three numbers of a normal, in any letter case.
 const NORMAL: [[&str; 3]; 2] = [["nx", "ny", "nz"], ["normal_x", "normal_y", "normal_z"]];
 
@@ -36,22 +33,6 @@ pub(crate) struct Collector<'a> {
     /// The filter, in words.
     filter: String,
     set: PointSet,
-}
-
-/// Where colours are, and how they become linear.
-struct Color {
-    place: ColorPlace,
-    encoding: ColorEncoding,
-    /// The linear value of each stored integer.
-    table: Vec<f32>,
-    /// Greatest number stored in any point of the file, kept or not.
-    greatest: f64,
-}
-
-enum ColorPlace {
-    Three([usize; 3]),
-    /// One number, 0xAARRGGBB.
-    Packed(usize),
 }
 
 impl<'a> Collector<'a> {
@@ -73,17 +54,18 @@ impl<'a> Collector<'a> {
         let mut normal = NORMAL.into_iter().find_map(|names| triple(fields, names).ok());
         let taken = |place: &usize| {
             position.contains(place)
-                || color.as_ref().is_some_and(|color| color.place.contains(*place))
+                || color.as_ref().is_some_and(|color| color.contains(*place))
                 || normal.is_some_and(|normal| normal.contains(place))
         };
 
         let mut set = PointSet::default();
         let mut places = Vec::new();
-        for (place, name) in distinct_names(fields).into_iter().enumerate() {
-            if taken(&place) {
-                continue;
-            }
-            if !options.wanted.attribute(&name) {
+        let names = distinct_names(fields);
+        let others: Vec<usize> = (0..fields.len()).filter(|place| !taken(place)).collect();
+        let wanted = options.wanted.attributes_among(others.iter().map(|&place| &*names[place]));
+        for (&place, wanted) in others.iter().zip(wanted) {
+            let name = names[place].clone();
+            if !wanted {
                 set.left_out.push(name);
                 continue;
             }
@@ -97,7 +79,6 @@ impl<'a> Collector<'a> {
             normal = None;
         }
         set.colors = color.is_some().then(Vec::new);
-        set.color_encoding = color.as_ref().map(|color| color.encoding);
         set.normals = normal.is_some().then(Vec::new);
 
         let filter = &options.filter;
@@ -105,7 +86,8 @@ impl<'a> Collector<'a> {
             true => None,
             false => {
                 let places = filter.names().map(|name| {
-                    find(fields, name).ok_or_else(|| PointsError::Missing {
+                    let place = names::find(names.iter().map(String::as_str), name);
+                    place.ok_or_else(|| PointsError::Missing {
                         path: path.into(),
                         missing: format!("attribute '{name}', which the filter asks for"),
                         place: format!("among the fields of a point ({})", listed(fields)),
@@ -169,7 +151,7 @@ impl<'a> Collector<'a> {
         set.positions.push(position);
         set.file_index.push(index);
         if let (Some(colors), Some(color)) = (&mut set.colors, &self.color) {
-            colors.push(color.linear(row));
+            colors.push(color.stored(row).map(|stored| stored as f32));
         }
         if let (Some(normals), Some(normal)) = (&mut set.normals, self.normal) {
             normals.push(normal.map(|place| row[place] as f32));
@@ -200,9 +182,6 @@ impl<'a> Collector<'a> {
     }
 
     /// The set, which must not be empty. `format` is the file format in words.
-    ///
-    /// Colours of 16 bits of which none is over 255 are taken for colours of 8; if all are 0, nobody
-    /// wrote colours into the fields that the format has for them.
     pub(crate) fn finish(self, format: &str) -> Result<PointSet, PointsError> {
         let mut set = self.set;
         if set.positions.is_empty() {
@@ -217,99 +196,17 @@ impl<'a> Collector<'a> {
                 usable => PointsError::FilteredOut { path, usable, filter: self.filter },
             });
         }
-        if let (Some(color), Some(colors)) = (&self.color, &mut set.colors)
-            && color.encoding == ColorEncoding::Srgb16
-        {
-            if color.greatest == 0.0 {
-                (set.colors, set.color_encoding) = (None, None);
-            } else if color.greatest <= 255.0 {
-                color.as_bytes(colors);
-                set.color_encoding = Some(ColorEncoding::Srgb8);
+        if let (Some(color), Some(colors)) = (&self.color, &mut set.colors) {
+            let Verdict { encoding, note } = color.verdict();
+            match encoding {
+                Some(encoding) => color::decode(encoding, colors),
+                None => set.colors = None,
             }
+            set.color_encoding = encoding;
+            set.notes.extend(note);
         }
         set.format = format.to_owned();
         Ok(set)
-    }
-}
-
-impl Color {
-    /// The colour among the fields: three numbers of one type, or a packed one.
-    fn find(fields: &[Field]) -> Option<Self> {
-        let packed = |name| {
-            let place = find(fields, name)?;
-            matches!(fields[place].kind, Type::I32 | Type::U32).then_some(place)
-        };
-        let (place, kind) = COLOR
-            .into_iter()
-            .find_map(|names| {
-                let places = triple(fields, names).ok()?;
-                let [kind, others @ ..] = places.map(|place| fields[place].kind);
-                let alike = others.iter().all(|&other| other == kind);
-                alike.then_some((ColorPlace::Three(places), kind))
-            })
-            .or_else(|| {
-                let place = PACKED_COLOR.into_iter().find_map(packed)?;
-                Some((ColorPlace::Packed(place), Type::U8))
-            })?;
-        let (encoding, entries) = match kind {
-            Type::F32 | Type::F64 => (ColorEncoding::Linear, 0),
-            Type::I16 | Type::U16 => (ColorEncoding::Srgb16, 1 << 16),
-            // Integers of 32 bits hold bytes: exporters that write them do so for want of uchar.
-            Type::I8 | Type::U8 | Type::I32 | Type::U32 | Type::I64 | Type::U64 => {
-                (ColorEncoding::Srgb8, 1 << 8)
-            }
-        };
-        let table = (0..entries).map(|stored| encoding.decode(f64::from(stored))).collect();
-        Some(Self { place, encoding, table, greatest: 0.0 })
-    }
-
-    fn stored(&self, row: &[f64]) -> [f64; 3] {
-        match self.place {
-            ColorPlace::Three(places) => places.map(|place| row[place]),
-            ColorPlace::Packed(place) => {
-                // Of a negative number, the bits of its 32 count.
-                let bits = row[place] as i64 as u32;
-                [16, 8, 0].map(|shift| f64::from(bits >> shift & 0xff))
-            }
-        }
-    }
-
-    /// Notes what a point of the file holds, whether it is kept or not.
-    fn see(&mut self, row: &[f64]) {
-        if self.encoding == ColorEncoding::Srgb16 {
-            self.greatest = self.stored(row).into_iter().fold(self.greatest, f64::max);
-        }
-    }
-
-    fn linear(&self, row: &[f64]) -> [f32; 3] {
-        let stored = self.stored(row);
-        match self.table.last() {
-            // Negative numbers become 0 in the cast.
-            Some(&brightest) => {
-                stored.map(|stored| *self.table.get(stored as usize).unwrap_or(&brightest))
-            }
-            None => stored.map(|stored| stored as f32),
-        }
-    }
-
-    /// Corrects colours that were taken for numbers of 16 bits, but are of 8, as in many LAS files.
-    fn as_bytes(&self, colors: &mut [[f32; 3]]) {
-        let bytes = &self.table[..256];
-        let linear: Vec<f32> =
-            (0..256).map(|stored| ColorEncoding::Srgb8.decode(f64::from(stored))).collect();
-        for value in colors.iter_mut().flatten() {
-            // The table ascends strictly, and all values are from it.
-            *value = linear[bytes.partition_point(|entry| entry < value).min(255)];
-        }
-    }
-}
-
-impl ColorPlace {
-    fn contains(&self, place: usize) -> bool {
-        match self {
-            Self::Three(places) => places.contains(&place),
-            Self::Packed(packed) => *packed == place,
-        }
     }
 }
 
@@ -359,6 +256,7 @@ fn listed(fields: &[Field]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::Type;
     use crate::filter::Filter;
     use crate::options::Wanted;
 
@@ -381,42 +279,6 @@ mod tests {
             collector.push(row)?;
         }
         collector.finish("rows")
-    }
-
-    /// 236 is 236 of 255, unless another point of the file has more.
-    #[test]
-    fn bytes_in_fields_of_16_bits_are_taken_for_bytes() {
-        let fields = xyz_and(&[("red", Type::U16), ("green", Type::U16), ("blue", Type::U16)]);
-        let dark: &[f64] = &[0.0, 0.0, 0.0, 236.0, 0.0, 10.0];
-        let set = collect(&fields, &[dark], &ReadOptions::default()).unwrap();
-        assert_eq!(set.color_encoding, Some(ColorEncoding::Srgb8));
-        let decode = |stored| ColorEncoding::Srgb8.decode(stored);
-        assert_eq!(set.colors.unwrap(), [[decode(236.0), 0.0, decode(10.0)]]);
-
-        let bright: &[f64] = &[0.0, 0.0, 0.0, 256.0, 0.0, 10.0];
-        let first = Filter { every: 2, ..Filter::default() };
-        for filter in [Filter::default(), first] {
-            let options = ReadOptions { filter, ..ReadOptions::default() };
-            let set = collect(&fields, &[dark, bright], &options).unwrap();
-            assert_eq!(set.color_encoding, Some(ColorEncoding::Srgb16));
-            assert_eq!(set.colors.unwrap()[0][0], ColorEncoding::Srgb16.decode(236.0));
-        }
-        let black = collect(&fields, &[&[0.0; 6]], &ReadOptions::default()).unwrap();
-        assert_eq!((black.colors, black.color_encoding), (None, None));
-    }
-
-    #[test]
-    fn packed_colors_come_apart() {
-        for (kind, stored) in [(Type::U32, f64::from(0xff80_40ffu32)), (Type::I32, -8_371_969.0)] {
-            let set = collect(
-                &xyz_and(&[("rgba", kind)]),
-                &[&[0.0, 0.0, 0.0, stored]],
-                &ReadOptions::default(),
-            );
-            let decode = |stored| ColorEncoding::Srgb8.decode(stored);
-            let expected = [decode(128.0), decode(64.0), decode(255.0)];
-            assert_eq!(set.unwrap().colors.unwrap(), [expected], "{kind:?}");
-        }
     }
 
     #[test]

@@ -7,6 +7,7 @@
 
 mod cloud;
 mod collect;
+mod color;
 mod columns;
 #[cfg(feature = "device")]
 pub mod device;
@@ -20,6 +21,7 @@ mod guard;
 mod las;
 mod lines;
 mod meaning;
+mod names;
 pub mod neighbors;
 mod npy;
 mod number;

@@ -9,7 +9,8 @@ mod header;
 mod literal;
 
 use crate::collect::Collector;
-use crate::columns::{Array, Part, Place, Records, Shared, SideBySide, data_error};
+use crate::color;
+use crate::columns::{Array, Coding, Part, Place, Records, Shared, SideBySide, data_error};
 use crate::error::PointsError;
 use crate::field::{Field, Type};
 use crate::meaning;
@@ -147,7 +148,9 @@ impl Rows {
             return Err(Trouble::header("elements that are no numbers", "numbers"));
         }
         if record.has_names {
-            let (names, places) = record.numbers.iter().cloned().unzip();
+            let (names, places) = (record.numbers.iter())
+                .map(|(name, place)| (name.clone(), bits_of_colors(name, *place)))
+                .unzip();
             let points = product(&header.shape)?;
             return Ok(Self { points, names, places, apart: false, transposed: false });
         }
@@ -200,6 +203,16 @@ impl Rows {
             Ok(Array { name: name.clone(), width: 1, numbers: Box::new(records) })
         });
         columns.collect()
+    }
+}
+
+/// A packed colour in a float is read as the bits that it is.
+fn bits_of_colors(name: &str, place: Place) -> Place {
+    match place.coding {
+        Coding::Number(kind) => {
+            Place { coding: Coding::Number(color::kind_in_binary(name, kind)), ..place }
+        }
+        Coding::Half => place,
     }
 }
 

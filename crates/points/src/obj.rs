@@ -354,7 +354,8 @@ mod tests {
         let set = read("v 1 2 3 0.5\n");
         assert_eq!(set.attribute("w"), Some(&Values::F64(vec![0.5])));
         let set = read("v 1 2 3 0.25 0 1\nv 1 2 3 1 1 1\n");
-        assert_eq!(set.colors, Some(vec![[0.25, 0.0, 1.0], [1.0; 3]]));
+        let quarter = ColorEncoding::Fraction.decode(0.25);
+        assert_eq!(set.colors, Some(vec![[quarter, 0.0, 1.0], [1.0; 3]]));
         assert_eq!(read("v 1 2 3 1 1 0\n").colors, Some(vec![[1.0, 1.0, 0.0]]));
         let set = read("v 1 2 3 1 255 128 0\n");
         assert_eq!(set.attribute("w"), Some(&Values::F64(vec![1.0])));

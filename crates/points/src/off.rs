@@ -298,7 +298,7 @@ mod tests {
             ("COFF\n1 0 0\n1 2 3 255 0 0 255\n", ColorEncoding::Srgb8),
             ("COFF\n1 0 0\n1 2 3 255 0 0\n", ColorEncoding::Srgb8),
             ("OFF\n1 0 0\n1 2 3 255 0 0\n", ColorEncoding::Srgb8),
-            ("COFF\n1 0 0\n1 2 3 1.0 0.0 0.0 1.0\n", ColorEncoding::Linear),
+            ("COFF\n1 0 0\n1 2 3 1.0 0.0 0.0 1.0\n", ColorEncoding::Fraction),
         ] {
             let set = read(text);
             assert_eq!(set.color_encoding, Some(encoding), "{text}");
@@ -307,7 +307,7 @@ mod tests {
         for word in ["STCNOFF", "CNSTOFF"] {
             let set = read(format!("{word}\n1 0 0\n1 2 3 0 0 1 0.5 0 0 1 0.25 0.75\n"));
             assert_eq!(set.normals, Some(vec![[0.0, 0.0, 1.0]]));
-            assert_eq!(set.colors, Some(vec![[0.5, 0.0, 0.0]]));
+            assert_eq!(set.colors, Some(vec![[ColorEncoding::Fraction.decode(0.5), 0.0, 0.0]]));
             assert_eq!(set.attribute("t"), Some(&Values::F64(vec![0.75])));
         }
     }

@@ -1,6 +1,7 @@
 //! What of a point file is read.
 
 use crate::filter::Filter;
+use crate::names;
 
 /// What of a point file is kept. The default is everything.
 ///
@@ -26,7 +27,7 @@ pub enum Wanted {
         colors: bool,
         /// Whether normals are.
         normals: bool,
-        /// The attributes of these names, where the file has them.
+        /// The attributes that these names mean, where the file has them.
         attributes: Vec<String>,
     },
 }
@@ -35,12 +36,13 @@ impl Wanted {
     /// What either wants.
     #[must_use]
     pub fn or(&self, other: &Self) -> Self {
-        let (Self::Some { attributes, .. }, Self::Some { attributes: others, .. }) = (self, other)
+        let (Self::Some { attributes: own, .. }, Self::Some { attributes: others, .. }) =
+            (self, other)
         else {
             return Self::All;
         };
-        let mut attributes = attributes.clone();
-        attributes.extend(others.iter().filter(|name| !self.attribute(name)).cloned());
+        let mut attributes = own.clone();
+        attributes.extend(others.iter().filter(|name| !own.contains(name)).cloned());
         Self::Some {
             colors: self.colors() || other.colors(),
             normals: self.normals() || other.normals(),
@@ -56,10 +58,16 @@ impl Wanted {
         matches!(self, Self::All | Self::Some { normals: true, .. })
     }
 
-    pub(crate) fn attribute(&self, name: &str) -> bool {
-        match self {
-            Self::All => true,
-            Self::Some { attributes, .. } => attributes.iter().any(|wanted| wanted == name),
+    /// Which of the attributes of these names are.
+    pub(crate) fn attributes_among<'a>(
+        &self,
+        names: impl ExactSizeIterator<Item = &'a str> + Clone,
+    ) -> Vec<bool> {
+        let Self::Some { attributes, .. } = self else { return vec![true; names.len()] };
+        let mut among = vec![false; names.len()];
+        for place in attributes.iter().filter_map(|asked| names::find(names.clone(), asked)) {
+            among[place] = true;
         }
+        among
     }
 }

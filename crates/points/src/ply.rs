@@ -14,6 +14,7 @@ mod header;
 mod splat;
 
 use crate::collect::Collector;
+use crate::color;
 use crate::error::{PointsError, Quoted};
 use crate::field::{Field, Type};
 use crate::options::ReadOptions;
@@ -39,11 +40,18 @@ pub(crate) fn read(
     path: &Path,
     options: &ReadOptions,
 ) -> Result<PointSet, PointsError> {
-    let header = header::read(&mut source, path)?;
+    let mut header = header::read(&mut source, path)?;
     let vertex = header.elements.iter().position(|element| element.name == VERTEX);
     let Some(vertex) = vertex else {
         return Err(no_vertices(&header, path));
     };
+    if header.encoding != Encoding::Ascii {
+        for property in &mut header.elements[vertex].properties {
+            if let Kind::Number(kind) = &mut property.kind {
+                *kind = color::kind_in_binary(&property.name, *kind);
+            }
+        }
+    }
     let mut body = Body { source, path, line: header.lines, line_end: header.line_end };
     for element in &header.elements[..vertex] {
         body.element(header.encoding, element, &mut |_| Ok(()))?;

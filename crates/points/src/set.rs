@@ -1,6 +1,7 @@
 //! A point set as a file holds it.
 
 use crate::field::Type;
+use crate::names;
 use std::collections::TryReserveError;
 
 /// Positions and attributes of one point file, in the file's own coordinates.
@@ -14,7 +15,8 @@ pub struct PointSet {
     pub positions: Vec<[f64; 3]>,
     /// Place in the file of each point, from 0, counting dropped ones.
     pub file_index: Vec<u32>,
-    /// Linear RGB, 1 at full intensity. See [`ColorEncoding`] for how the file's values became it.
+    /// Linear RGB, 1 at full intensity, NaN where the file has NaN. See [`ColorEncoding`] for how the
+    /// file's values became it.
     pub colors: Option<Vec<[f32; 3]>>,
     /// How the file stores colours; `None` where it has none.
     pub color_encoding: Option<ColorEncoding>,
@@ -76,15 +78,21 @@ macro_rules! each_type {
     };
 }
 
-/// How a file stores colours.
+/// How a file stores colours: always in sRGB, and by which number at full intensity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ColorEncoding {
-    /// Floats, taken as linear, 1 at full intensity.
-    Linear,
-    /// Integers in sRGB, 255 at full intensity. Values beyond 0..=255 are clamped.
+    /// Whole numbers, 255 at full intensity. Values beyond 0..=255 are clamped.
     Srgb8,
-    /// 16-bit integers in sRGB, 65535 at full intensity.
+    /// Whole numbers, 65535 at full intensity.
     Srgb16,
+    /// Bytes in the upper halves of 16 bits, 0xff00 at full intensity.
+    Srgb16High,
+    /// Floats, 1 at full intensity.
+    Fraction,
+    /// Floats, 255 at full intensity.
+    Fraction255,
+    /// Floats, 65535 at full intensity.
+    Fraction65535,
 }
 
 impl PointSet {
@@ -111,6 +119,13 @@ impl PointSet {
     /// The attribute of this name, if the points have it.
     pub fn attribute(&self, name: &str) -> Option<&Values> {
         self.attributes.iter().find(|attribute| attribute.name == name).map(|found| &found.values)
+    }
+
+    /// The attribute that a name in a scene means: the one of this name, else one in other letter
+    /// case or as another program names it (docs/point-files.md, "Names").
+    pub fn attribute_meant(&self, name: &str) -> Option<&Values> {
+        let names = self.attributes.iter().map(|attribute| attribute.name.as_str());
+        names::find(names, name).map(|place| &self.attributes[place].values)
     }
 
     /// The points that are to be kept, by their place in this set.
@@ -215,39 +230,42 @@ impl Values {
 }
 
 impl ColorEncoding {
-    /// The stored value 'at full intensity', which becomes 1.
+    /// The stored value at full intensity, which becomes 1.
     fn full(self) -> f64 {
         match self {
-            Self::Linear => 1.0,
-            Self::Srgb8 => 255.0,
-            Self::Srgb16 => 65535.0,
+            Self::Fraction => 1.0,
+            Self::Srgb8 | Self::Fraction255 => 255.0,
+            Self::Srgb16High => 65280.0,
+            Self::Srgb16 | Self::Fraction65535 => 65535.0,
+        }
+    }
+
+    /// What stored values are multiples of, as far as 32 bits of linear light tell.
+    fn steps_of_one(self) -> f64 {
+        match self {
+            Self::Srgb8 | Self::Srgb16 => 1.0,
+            Self::Srgb16High => 1.0 / 256.0,
+            Self::Fraction => 1e7,
+            Self::Fraction255 => 1e4,
+            Self::Fraction65535 => 1e2,
         }
     }
 
     /// A stored value as a linear one.
     pub fn decode(self, stored: f64) -> f32 {
-        match self {
-            Self::Linear => stored as f32,
-            Self::Srgb8 | Self::Srgb16 => {
-                linear_from_srgb((stored / self.full()).clamp(0.0, 1.0)) as f32
-            }
-        }
+        linear_from_srgb((stored / self.full()).clamp(0.0, 1.0)) as f32
     }
 
     /// The stored value that [`decode`](Self::decode) makes `linear`: exactly, for integers within
-    /// their range.
+    /// their range, and to seven digits for floats.
     pub fn encode(self, linear: f32) -> f64 {
-        match self {
-            Self::Linear => f64::from(linear),
-            Self::Srgb8 | Self::Srgb16 => {
-                (srgb_from_linear(f64::from(linear)) * self.full()).round()
-            }
-        }
+        let stored = srgb_from_linear(f64::from(linear)) * self.full();
+        (stored * self.steps_of_one()).round() / self.steps_of_one()
     }
 }
 
 /// The sRGB curve of IEC 61966-2-1, from the stored 0..=1 to linear light.
-pub(crate) fn linear_from_srgb(v: f64) -> f64 {
+fn linear_from_srgb(v: f64) -> f64 {
     if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
@@ -276,10 +294,22 @@ mod tests {
 
     #[test]
     fn every_stored_integer_comes_back() {
-        for (encoding, full) in [(ColorEncoding::Srgb8, 255), (ColorEncoding::Srgb16, 65535)] {
-            for stored in (0..=full).map(f64::from) {
+        for (encoding, full, step) in [
+            (ColorEncoding::Srgb8, 255, 1),
+            (ColorEncoding::Srgb16, 65535, 1),
+            (ColorEncoding::Srgb16High, 65280, 256),
+            (ColorEncoding::Fraction255, 255, 1),
+            (ColorEncoding::Fraction65535, 65535, 1),
+        ] {
+            for stored in (0..=full).step_by(step).map(f64::from) {
                 assert_eq!(encoding.encode(encoding.decode(stored)), stored);
             }
+        }
+        for stored in (0..=10_000).map(|i| f64::from(i) / 1e4) {
+            assert_eq!(
+                ColorEncoding::Fraction.encode(ColorEncoding::Fraction.decode(stored)),
+                stored
+            );
         }
     }
 }

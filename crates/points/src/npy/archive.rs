@@ -6,7 +6,7 @@ use crate::error::PointsError;
 use crate::field::Type;
 use crate::meaning;
 use crate::npy::header::Header;
-use crate::npy::{HELP, MAX_COLUMNS, Rows, named_fields};
+use crate::npy::{HELP, MAX_COLUMNS, Rows, bits_of_colors, named_fields};
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
@@ -116,7 +116,12 @@ pub(crate) fn read(
             Header::read(&mut member.open(&file)).map_err(|e| e.at(path, Some(&member.name)))?;
         // What has a shape of no points is of no use.
         match Rows::of(&header) {
-            Ok(rows) => entries.push(Entry { member, header, rows }),
+            Ok(mut rows) => {
+                if let [place] = rows.places.as_mut_slice() {
+                    *place = bits_of_colors(&member.name, *place);
+                }
+                entries.push(Entry { member, header, rows });
+            }
             Err(_) => left_out.push(format!("{} {}", member.name, header.shape_in_words())),
         }
     }

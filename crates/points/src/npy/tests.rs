@@ -163,7 +163,7 @@ fn columns_without_names_are_what_they_look_like() {
     let set = read(&npy("'<f4'", false, "(1, 6)", &f4(&[1.0, 2.0, 3.0, 255.0, 0.0, 128.0])));
     assert_eq!(set.color_encoding, Some(ColorEncoding::Srgb8));
     let set = read(&npy("'<f4'", false, "(1, 6)", &f4(&[1.0, 2.0, 3.0, 1.0, 0.0, 0.5])));
-    assert_eq!(set.colors, Some(vec![[1.0, 0.0, 0.5]]));
+    assert_eq!(set.colors, Some(vec![[1.0, 0.0, ColorEncoding::Fraction.decode(0.5)]]));
     let set = read(&npy("'<f4'", false, "(1, 5)", &f4(&[1.0, 2.0, 3.0, 7.0, 8.0])));
     assert_eq!(set.attribute("column_5"), Some(&Values::F32(vec![8.0])));
 }

@@ -1,5 +1,6 @@
 //! The header of a PCD file.
 
+use crate::color;
 use crate::error::{PointsError, Quoted};
 use crate::field::Type;
 use crate::source::{Line, Source};
@@ -58,19 +59,12 @@ impl Declared {
 
     /// A colour in the bytes of a number of 32 bits, of which PCL makes floats at times.
     pub(super) fn is_packed(&self) -> bool {
-        let name = self.name.to_ascii_lowercase();
-        self.count == 1 && self.kind.size() == 4 && (name == "rgb" || name == "rgba")
+        self.count == 1 && self.kind.size() == 4 && color::is_packed(&self.name)
     }
 
-    /// The value of a word.
+    /// The value of a word; of a packed colour, what the collector makes bits of.
     pub(super) fn parse(&self, word: &[u8]) -> Option<f64> {
-        let value = self.kind.parse(word)?;
-        Some(match self.is_packed() && self.kind == Type::F32 {
-            // Whatever colour NaN had is lost.
-            true if value.is_nan() => 0.0,
-            true => (value as f32).to_bits().into(),
-            false => value,
-        })
+        self.kind.parse(word)
     }
 }
 

@@ -6,7 +6,6 @@
 //! logarithm, and become what they stand for.
 
 use crate::field::{Field, Type};
-use crate::set::linear_from_srgb;
 
 /// The constant spherical harmonic, 1 / (2 √π).
 const HARMONIC: f64 = 0.282_094_791_773_878_14;
@@ -61,7 +60,7 @@ impl Gaussians {
             let value = vertex[place];
             match meaning {
                 Meaning::Itself => value,
-                Meaning::Harmonic => linear_from_srgb((0.5 + HARMONIC * value).clamp(0.0, 1.0)),
+                Meaning::Harmonic => (0.5 + HARMONIC * value).clamp(0.0, 1.0),
                 Meaning::Logit => 1.0 / (1.0 + (-value).exp()),
                 Meaning::Logarithm => value.exp(),
             }

@@ -239,7 +239,10 @@ fn colors_are_decoded_by_their_type() {
     assert_eq!(of("int", ["r", "g", "b"], "256 0 20"), [1.0, 0.0, byte]);
     // 5140 / 65535 = 20 / 255
     assert_eq!(of("ushort", rgb, "65535 0 5140"), [1.0, 0.0, byte]);
-    assert_eq!(of("float", rgb, "0.5 2 -1"), [0.5, 2.0, -1.0]);
+    let half = ((0.5f64 + 0.055) / 1.055).powf(2.4) as f32;
+    assert_eq!(of("float", rgb, "0.5 1 -1"), [half, 1.0, 0.0]);
+    assert_eq!(of("double", rgb, "0.5 2 -1"), [half, 1.0, 0.0]);
+    assert_eq!(of("float", rgb, "255 0 20"), [1.0, 0.0, byte]);
 }
 
 #[test]

@@ -119,7 +119,7 @@ fn columns_without_names_are_what_they_look_like() {
     assert_eq!(set.normals, Some(vec![[0.6, 0.0, 0.8]]));
     assert!(set.format.ends_with("taken for x y z nx ny nz, judging by the first row"));
     let set = read("1 2 3 0.5 0 1.0\n");
-    assert_eq!(set.color_encoding, Some(ColorEncoding::Linear));
+    assert_eq!(set.color_encoding, Some(ColorEncoding::Fraction));
 }
 
 /// What the first rows look like does not decide between 8 and 16 bits.
