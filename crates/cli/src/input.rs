@@ -177,6 +177,7 @@ impl Input {
         let all = |object: &Object| ReadOptions {
             wanted: Wanted::All,
             filter: plan::point_filter(&object.filter),
+            ..ReadOptions::default()
         };
         self.read_as(all, progress)
     }

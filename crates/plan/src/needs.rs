@@ -42,7 +42,7 @@ pub fn read_options(object: &Object) -> ReadOptions {
         normals: matches!(object.material.kind, MaterialKind::Glass { .. }),
         attributes: names.into_iter().map(str::to_owned).collect(),
     };
-    ReadOptions { wanted, filter: filter(&object.filter) }
+    ReadOptions { wanted, filter: filter(&object.filter), ..ReadOptions::default() }
 }
 
 /// A scene's filter as readers take it.

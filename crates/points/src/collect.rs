@@ -38,8 +38,21 @@ pub(crate) struct Collector<'a> {
 impl<'a> Collector<'a> {
     /// Decides what each field of a row is. A row has one number for each of `fields`, in order.
     ///
-    /// Fails if there is no position, or a name that the filter asks for is missing.
+    /// Fails if there is no position, a name that the filter asks for is missing, or the user names
+    /// columns that are not there.
     pub(crate) fn new(
+        fields: &[Field],
+        path: &'a Path,
+        options: &ReadOptions,
+    ) -> Result<Self, PointsError> {
+        match options.columns.is_empty() {
+            true => Self::of_named(fields, path, options),
+            false => Self::of_named(&options.columns.applied(fields, path)?, path, options),
+        }
+    }
+
+    /// The same of fields whose names are already those that the user gives them.
+    pub(crate) fn of_named(
         fields: &[Field],
         path: &'a Path,
         options: &ReadOptions,
@@ -48,7 +61,8 @@ impl<'a> Collector<'a> {
             path: path.into(),
             missing: format!("number '{axis}'"),
             place: format!("among the fields of a point ({})", listed(fields)),
-            help: "export positions as the numbers x, y and z",
+            help: "export positions as the numbers x, y and z, or name them by --columns or \
+                   [objects.columns]",
         })?;
         let mut color = Color::find(fields);
         let mut normal = NORMAL.into_iter().find_map(|names| triple(fields, names).ok());
@@ -61,7 +75,9 @@ impl<'a> Collector<'a> {
         let mut set = PointSet::default();
         let mut places = Vec::new();
         let names = distinct_names(fields);
-        let others: Vec<usize> = (0..fields.len()).filter(|place| !taken(place)).collect();
+        let others: Vec<usize> = (0..fields.len())
+            .filter(|place| !taken(place) && !fields[*place].is_left_out())
+            .collect();
         let wanted = options.wanted.attributes_among(others.iter().map(|&place| &*names[place]));
         for (&place, wanted) in others.iter().zip(wanted) {
             let name = names[place].clone();

@@ -7,11 +7,35 @@ pub(crate) struct Field {
     pub(crate) name: String,
     /// How the file stores it.
     pub(crate) kind: Type,
+    /// The name that the file gives it, where that is another.
+    in_file: Option<String>,
+    /// Whether it is passed over.
+    left_out: bool,
 }
 
 impl Field {
     pub(crate) fn new(name: impl Into<String>, kind: Type) -> Self {
-        Self { name: name.into(), kind }
+        Self { name: name.into(), kind, in_file: None, left_out: false }
+    }
+
+    /// One that is passed over.
+    pub(crate) fn left_out(kind: Type) -> Self {
+        Self { left_out: true, ..Self::new("", kind) }
+    }
+
+    /// Whether it is passed over.
+    pub(crate) fn is_left_out(&self) -> bool {
+        self.left_out
+    }
+
+    /// The same, with the name that the file gives it.
+    pub(crate) fn called(self, in_file: &str) -> Self {
+        Self { in_file: Some(in_file.to_owned()), ..self }
+    }
+
+    /// The name that the file gives it.
+    pub(crate) fn original_name(&self) -> &str {
+        self.in_file.as_deref().unwrap_or(&self.name)
     }
 }
 

@@ -5,6 +5,7 @@
 //! storage buffers of a device.
 #![forbid(unsafe_code)]
 
+mod assign;
 mod cloud;
 mod collect;
 mod color;
@@ -18,6 +19,7 @@ mod filter;
 mod format;
 mod grid;
 mod guard;
+mod guess;
 mod las;
 mod lines;
 mod meaning;
@@ -40,6 +42,7 @@ mod text;
 mod vtk;
 mod watch;
 
+pub use assign::{Column, Columns};
 pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange, bounds_of};
 pub use error::PointsError;
 pub use filter::Filter;

@@ -1,10 +1,10 @@
-//! What the columns of a table mean: by their names, or, where they have none, by how many there
-//! are and what stands in them.
+//! What the columns of a table mean by their names; where they have none, see [`guess`](crate::guess).
 //!
-//! The outcome depends on the names and on the first rows alone, so one file is always read in one
-//! way, and what was assumed is said in the set's `format`.
+//! The outcome depends only on the names and on the first rows, so one file is always read in one
+//! way, and the set's `format` reports what was assumed.
 
 use crate::field::{Field, Type};
+use crate::guess::numbered;
 
 /// Names of positions, the likelier before: the first that a table has is taken, axis by axis.
 const POSITION: [&[&str]; 3] = [
@@ -61,6 +61,27 @@ const POSITION: [&[&str]; 3] = [
         "h",
     ],
 ];
+/// Names that stand for an axis only where all three are there.
+const POSITION_OF_THREE: [[&str; 3]; 6] = [
+    ["e", "n", "h"],
+    ["e", "n", "z"],
+    ["e", "n", "u"],
+    ["glon", "glat", "zg"],
+    ["rechtswert", "hochwert", "höhe"],
+    ["rechtswert", "hochwert", "hoehe"],
+];
+/// Names that may have something before or after them, the same for all three axes, such as
+/// `longitude_centroid`.
+const POSITION_WITH_MORE: [&[&str]; 3] = [
+    &["longitude", "lon", "easting", "east"],
+    &["latitude", "lat", "northing", "north"],
+    &["elevation", "elev", "height", "altitude", "alt", "z"],
+];
+/// What may stand before or after x, y and z.
+const FRAMES: [&str; 12] = [
+    "utm", "ecef", "enu", "map", "local", "world", "global", "geo", "center", "centre", "centroid",
+    "m",
+];
 /// Names of the three numbers of a colour.
 const COLOR: [[&str; 3]; 12] = [
     ["red", "green", "blue"],
@@ -114,8 +135,8 @@ const COLORS: [&str; 9] =
     ["rgb", "rgba", "colors", "color", "colours", "colour", "rgbs", "vertex_colors", "diffuse"];
 const NORMALS: [&str; 4] = ["normals", "normal", "norms", "vertex_normals"];
 
-const RED: [&str; 3] = ["red", "green", "blue"];
-const NX: [&str; 3] = ["nx", "ny", "nz"];
+pub(crate) const RED: [&str; 3] = ["red", "green", "blue"];
+pub(crate) const NX: [&str; 3] = ["nx", "ny", "nz"];
 
 /// Rows from the beginning of a table, by which columns are judged.
 #[derive(Default)]
@@ -132,7 +153,7 @@ pub(crate) struct Sample {
 pub(crate) const SAMPLE_ROWS: usize = 1000;
 
 impl Sample {
-    fn column(&self, place: usize) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn column(&self, place: usize) -> impl Iterator<Item = f64> + '_ {
         self.values.iter().skip(place).step_by(self.columns.max(1)).copied()
     }
 
@@ -140,25 +161,8 @@ impl Sample {
         places.iter().all(|&place| self.column(place).filter(|value| !value.is_nan()).all(&fits))
     }
 
-    fn is_float(&self, place: usize) -> bool {
+    pub(crate) fn is_float(&self, place: usize) -> bool {
         self.floats.get(place).is_some_and(|&float| float)
-    }
-
-    /// Whether three columns could be whole numbers from 0 to `most`.
-    fn counts_to(&self, places: [usize; 3], most: f64) -> bool {
-        self.all(places, |value| value.fract() == 0.0 && (0.0..=most).contains(&value))
-    }
-
-    /// Whether each row of three columns has length 1, but for 1 % and zero vectors.
-    fn unit_vectors(&self, [x, y, z]: [usize; 3]) -> bool {
-        let rows = self.column(x).zip(self.column(y)).zip(self.column(z));
-        let mut lengths = rows.map(|((x, y), z)| (x * x + y * y + z * z).sqrt());
-        let mut units = 0;
-        let fit = lengths.all(|length| {
-            units += u64::from(length > 0.0);
-            length == 0.0 || length.is_nan() || (length - 1.0).abs() <= 0.01
-        });
-        fit && units > 0
     }
 
     /// How three columns that are known to be a colour store it: whole numbers (of 8 bits, unless
@@ -171,26 +175,6 @@ impl Sample {
         let fractions = !whole && self.all(places, |value| value < 10.0);
         if fractions || (whole && small && float) { Type::F32 } else { Type::U16 }
     }
-
-    /// What three columns without a name are, if that can be told.
-    fn triple(&self, first: usize) -> Option<Triple> {
-        let places = [first, first + 1, first + 2];
-        if self.unit_vectors(places) {
-            return Some(Triple::Normal);
-        }
-        let float = places.iter().any(|&place| self.is_float(place));
-        if float && self.all(places, |value| (0.0..=1.0).contains(&value)) {
-            return Some(Triple::Color(Type::F32));
-        }
-        self.counts_to(places, 65535.0).then_some(Triple::Color(Type::U16))
-    }
-}
-
-/// Three columns that belong together.
-#[derive(Clone, Copy, PartialEq)]
-enum Triple {
-    Color(Type),
-    Normal,
 }
 
 /// Names for the numbers of an array with several a point: those of x y z, of a colour or of a
@@ -223,10 +207,47 @@ pub(crate) fn is_position(name: &str) -> bool {
 /// The places of x, y and z among these names.
 pub(crate) fn positions_among(names: &[&str]) -> Option<[usize; 3]> {
     let plain: Vec<String> = names.iter().map(|name| plain(name)).collect();
-    let place =
-        |axis: &[&str]| axis.iter().find_map(|name| plain.iter().position(|other| other == name));
-    let [x, y, z] = POSITION;
-    Some([place(x)?, place(y)?, place(z)?])
+    positions_of(&plain)
+}
+
+/// The same of names without what exporters add.
+fn positions_of(plain: &[String]) -> Option<[usize; 3]> {
+    let place = |name: &str| plain.iter().position(|other| other == name);
+    let likeliest = |axis: &[&str]| axis.iter().find_map(|name| place(name));
+    let all = |names: [&str; 3]| {
+        let [x, y, z] = names.map(place);
+        Some([x?, y?, z?])
+    };
+    let [x, y, z] = POSITION.map(likeliest);
+    let plainest = || Some([x?, y?, z?]);
+    plainest().or_else(|| POSITION_OF_THREE.into_iter().find_map(all)).or_else(|| with_more(plain))
+}
+
+/// Positions whose names have the same before and after what stands for the axis.
+fn with_more(plain: &[String]) -> Option<[usize; 3]> {
+    let [x, y, z] = POSITION_WITH_MORE;
+    plain.iter().enumerate().find_map(|(place, name)| {
+        let around = |axis: &&str| {
+            let (before, after) = name.split_once(*axis)?;
+            let apart = (before.is_empty() || before.ends_with('_'))
+                && (after.is_empty() || after.starts_with('_'));
+            apart.then(|| (before.to_owned(), after.to_owned()))
+        };
+        let same = |axes: &[&str], before: &str, after: &str| {
+            let names = axes.iter().map(|axis| format!("{before}{axis}{after}"));
+            names.into_iter().find_map(|name| plain.iter().position(|other| *other == name))
+        };
+        let of = |axes: [&[&str]; 2], (before, after): (String, String)| {
+            Some([place, same(axes[0], &before, &after)?, same(axes[1], &before, &after)?])
+        };
+        let words = x.iter().filter_map(around).find_map(|both| of([y, z], both));
+        words.or_else(|| {
+            let (before, after) = around(&"x")?;
+            let frame = before.trim_matches('_').to_owned() + after.trim_matches('_');
+            let axes: [&[&str]; 2] = [&["y"], &["z"]];
+            FRAMES.contains(&&*frame).then(|| of(axes, (before, after)))?
+        })
+    })
 }
 
 /// Columns by their names. `kinds` are their types where the file states them; what is not stated
@@ -240,8 +261,12 @@ pub(crate) fn by_names(names: &[String], kinds: Option<&[Type]>, sample: &Sample
         let kind = stated(place).unwrap_or(kind);
         fields[place].get_or_insert_with(|| Field::new(name, kind));
     };
-    for (axis, names) in ["x", "y", "z"].into_iter().zip(POSITION) {
-        if let Some(place) = names.iter().find_map(|name| find(name)) {
+    let position = match positions_of(&plain) {
+        Some(places) => places.map(Some),
+        None => POSITION.map(|names| names.iter().find_map(|name| find(name))),
+    };
+    for (axis, place) in ["x", "y", "z"].into_iter().zip(position) {
+        if let Some(place) = place {
             set(&mut fields, place, axis, Type::F64);
         }
     }
@@ -266,69 +291,21 @@ pub(crate) fn by_names(names: &[String], kinds: Option<&[Type]>, sample: &Sample
         }
     }
     let rest = fields.into_iter().enumerate().map(|(place, field)| {
-        field.unwrap_or_else(|| {
+        let field = field.unwrap_or_else(|| {
             let name = match names[place].trim() {
-                "" => format!("column_{}", place + 1),
+                "" => numbered(place),
                 name => printable(name),
             };
             Field::new(name, stated(place).unwrap_or(Type::F64))
-        })
+        });
+        field.called(names[place].trim())
     });
     rest.collect()
 }
 
-/// Columns without names. The first three are x y z; then, if the columns look like it:
-///
-/// | columns | further ones |
-/// |---|---|
-/// | 4 | intensity |
-/// | 6 | a colour or a normal |
-/// | 7 | intensity and one of these, or one of these and intensity |
-/// | 9 | two of these |
-/// | 10 | intensity and two of these, or two of these and intensity |
-///
-/// Three columns look like a normal if each row has length 1 (or 0); like a colour if they are
-/// whole numbers from 0 to 65535, or fractions from 0 to 1. All else is named `column_4` and so on.
-///
-/// `kinds` are the columns' types where the file states them.
-pub(crate) fn by_place(sample: &Sample, kinds: Option<&[Type]>) -> Vec<Field> {
-    let kind = |place: usize| kinds.map_or(Type::F64, |kinds| kinds[place]);
-    let named = |place: usize, name: &str| Field::new(name, kind(place));
-    let column = |place: usize| named(place, &format!("column_{}", place + 1));
-    let names = ["x", "y", "z"].into_iter().enumerate();
-    let mut fields: Vec<Field> = names.map(|(place, name)| named(place, name)).collect();
-    let triples = |places: &[usize]| -> Option<Vec<Field>> {
-        let found: Vec<_> = places.iter().map(|&p| sample.triple(p)).collect::<Option<_>>()?;
-        let normals = found.iter().filter(|&&triple| triple == Triple::Normal).count();
-        if normals > 1 || found.len() - normals > 1 {
-            return None;
-        }
-        let fields = found.into_iter().flat_map(|triple| match triple {
-            Triple::Color(kind) => RED.map(|name| Field::new(name, kind)),
-            Triple::Normal => NX.map(|name| Field::new(name, Type::F32)),
-        });
-        Some(fields.collect())
-    };
-    let rest = match sample.columns {
-        4 => Some(vec![named(3, "intensity")]),
-        6 => triples(&[3]),
-        9 => triples(&[3, 6]),
-        7 | 10 => {
-            let places = |first: usize| (first..sample.columns - 2).step_by(3).collect::<Vec<_>>();
-            let intensity = |place| vec![named(place, "intensity")];
-            let after = triples(&places(4)).map(|rest| [intensity(3), rest].concat());
-            let last = sample.columns - 1;
-            after.or_else(|| triples(&places(3)).map(|rest| [rest, intensity(last)].concat()))
-        }
-        _ => None,
-    };
-    fields.extend(rest.unwrap_or_else(|| (3..sample.columns).map(column).collect()));
-    fields
-}
-
 /// A name without what exporters add to it: `"X [m]"`, `//X`, `Points:0` and `Normal.X` become `x`,
 /// `x`, `points_0` and `normal_x`.
-fn plain(name: &str) -> String {
+pub(crate) fn plain(name: &str) -> String {
     let name = name.trim().trim_start_matches(['/', '#', '%']).trim().to_lowercase();
     let unit = name.strip_suffix([')', ']']).and_then(|rest| rest.rfind(['(', '[']));
     let name = match unit {
@@ -362,12 +339,6 @@ mod tests {
         by_names(&names, None, &sample).into_iter().map(|field| field.name).collect()
     }
 
-    fn placed(row: &[f64], floats: bool) -> String {
-        let sample =
-            Sample { columns: row.len(), values: row.to_vec(), floats: vec![floats; row.len()] };
-        listed(&by_place(&sample, None))
-    }
-
     #[test]
     fn names_of_many_programs_mean_the_same() {
         let expected = ["x", "y", "z", "red", "green", "blue"];
@@ -384,33 +355,10 @@ mod tests {
         // A better name leaves a worse one for what it says.
         assert_eq!(named(&["height", "Z", "x", "Y"], &row[..4]), ["height", "z", "x", "y"]);
         assert_eq!(named(&["x", "y", "z", "r", ""], &row[..5]), ["x", "y", "z", "r", "column_5"]);
-    }
-
-    #[test]
-    fn columns_without_names_are_told_by_their_values() {
-        for (row, floats, expected) in [
-            (&[1.0, 2.0, 3.0][..], true, "x y z"),
-            (&[1.0, 2.0, 3.0, 4.0], true, "x y z intensity"),
-            (&[1.0, 2.0, 3.0, 4.0, 5.0], true, "x y z column_4 column_5"),
-            (&[1.0, 2.0, 3.0, 255.0, 0.0, 7.0], false, "x y z red green blue"),
-            (&[1.0, 2.0, 3.0, 0.0, 0.0, -1.0], false, "x y z nx ny nz"),
-            (&[1.0, 2.0, 3.0, 0.6, 0.0, 0.8], true, "x y z nx ny nz"),
-            (&[1.0, 2.0, 3.0, 0.6, 0.0, 0.7], true, "x y z red green blue"),
-            (&[1.0, 2.0, 3.0, 0.6, 0.0, 7.7], true, "x y z column_4 column_5 column_6"),
-            (&[1.0, 2.0, 3.0, -9.0, 4.0, 5.0, 6.0], false, "x y z intensity red green blue"),
-            (&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.5], false, "x y z red green blue intensity"),
-            (
-                &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.0, 1.0, 0.0],
-                false,
-                "x y z red green blue nx ny nz",
-            ),
-            (
-                &[1.0, 2.0, 3.0, 0.5, 0.0, 1.0, 0.0, 4.0, 5.0, 6.0],
-                false,
-                "x y z intensity nx ny nz red green blue",
-            ),
-        ] {
-            assert_eq!(placed(row, floats), expected, "{row:?}");
-        }
+        assert_eq!(named(&["n", "E", "H", "q"], &row[..4]), ["y", "x", "z", "q"]);
+        assert_eq!(named(&["utm_x", "utm_y", "utm_z"], &row[..3]), ["x", "y", "z"]);
+        assert_eq!(named(&["v_x", "v_y", "v_z"], &row[..3]), ["v_x", "v_y", "v_z"]);
+        let lvis = ["LFID", "LONGITUDE_CENTROID", "LATITUDE_CENTROID", "ELEVATION_CENTROID"];
+        assert_eq!(named(&lvis, &row[..4]), ["LFID", "x", "y", "z"]);
     }
 }

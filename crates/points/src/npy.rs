@@ -8,12 +8,14 @@ mod archive;
 mod header;
 mod literal;
 
+use crate::assign::Columns;
 use crate::collect::Collector;
 use crate::color;
 use crate::columns::{Array, Coding, Part, Place, Records, Shared, SideBySide, data_error};
 use crate::error::PointsError;
 use crate::field::{Field, Type};
-use crate::meaning;
+use crate::guess::{self, numbered};
+use crate::meaning::{self, Sample};
 use crate::npy::header::{Header, MAGIC};
 use crate::options::ReadOptions;
 use crate::set::PointSet;
@@ -26,6 +28,8 @@ pub(crate) use archive::{read as read_archive, sniff as sniff_archive};
 
 /// An array of more columns is taken for something else.
 const MAX_COLUMNS: usize = 1000;
+/// Columns of a point in an array of three dimensions or more.
+const MAP_COLUMNS: std::ops::RangeInclusive<u64> = 3..=10;
 /// Up to so many columns, three rows are three points.
 const MOST_ROWS_OF_THREE: u64 = 16;
 
@@ -82,6 +86,14 @@ pub(crate) fn read(
         Ok(Box::new(Part::new(&file, place, u64::MAX).buffered()))
     };
     let header = Header::read(&mut open(0).map_err(io_error)?).map_err(|e| e.at(path, None))?;
+    if is_lattice(&header) {
+        let found = header.shape_in_words();
+        let expected = "rows of points, (n, 3) or with more columns, or a map of points, (rows, \
+                        columns, 3) up to 10";
+        let help = "of a lattice of values, save numpy.column_stack([numpy.indices(a.shape).reshape(\
+                    a.ndim, -1).T, a.ravel()]) after a = a.squeeze()";
+        return Err(PointsError::wrong(path, "the shape of the array", found, expected, help));
+    }
     let rows = Rows::of(&header).map_err(|e| e.at(path, None))?;
     if !header.record.has_names && rows.names.len() < 3 {
         let found = format!("the shape {}", header.shape_in_words());
@@ -105,11 +117,15 @@ pub(crate) fn read(
     let table = SideBySide::new(arrays, rows.points, path)?;
     let kinds = rows.kinds();
     let sample = table.sample(kinds.iter().map(|kind| kind.is_float()).collect());
-    let fields = match header.record.has_names {
-        true => meaning::by_names(&rows.names, Some(&kinds), &sample),
-        false => meaning::by_place(&sample, Some(&kinds)),
+    let (fields, note) = match (header.record.has_names, options.columns.is_empty()) {
+        (true, _) => (named(&rows.names, &kinds, &sample, path, &options.columns)?, None),
+        (false, true) => {
+            let guess = guess::by_place(&sample, Some(&kinds));
+            (guess.fields, guess.note)
+        }
+        (false, false) => (said(&sample, &kinds, path, &options.columns)?, None),
     };
-    let mut collector = Collector::new(&fields, path, options)?;
+    let mut collector = Collector::of_named(&fields, path, options)?;
     collector.expect(rows.points)?;
     table.collect(&mut collector)?;
     let shape = header.shape_in_words();
@@ -119,7 +135,35 @@ pub(crate) fn read(
         let columns = if rows.transposed { "rows" } else { "columns" };
         format!("{columns} taken for {}", meaning::listed(&fields))
     };
-    collector.finish(&format!("NPY, shape {shape}, {taken}"))
+    let mut set = collector.finish(&format!("NPY, shape {shape}, {taken}"))?;
+    set.notes.extend(note);
+    Ok(set)
+}
+
+/// Whether an array of three dimensions or more has a value at each node of a lattice, rather than
+/// the columns of a point in its last dimension.
+fn is_lattice(header: &Header) -> bool {
+    match *header.shape {
+        _ if header.record.has_names => false,
+        [.., _, _, columns] => !MAP_COLUMNS.contains(&columns),
+        _ => false,
+    }
+}
+
+/// The columns of an array without names, as the user says.
+fn said(
+    sample: &Sample,
+    kinds: &[Type],
+    path: &Path,
+    columns: &Columns,
+) -> Result<Vec<Field>, PointsError> {
+    let names: Vec<String> = (0..kinds.len()).map(numbered).collect();
+    let columns = match columns.position(path)? {
+        true => columns.clone(),
+        // The position is where it would be without.
+        false => columns.with_position(&guess::by_place(sample, Some(kinds)).fields),
+    };
+    named(&names, kinds, sample, path, &columns)
 }
 
 /// An array as points.
@@ -216,10 +260,22 @@ fn bits_of_colors(name: &str, place: Place) -> Place {
     }
 }
 
-/// The fields of arrays that are read by their names.
-fn named_fields(names: &[String], kinds: &[Type], table: &SideBySide<'_>) -> Vec<Field> {
-    let sample = table.sample(kinds.iter().map(|kind| kind.is_float()).collect());
-    meaning::by_names(names, Some(kinds), &sample)
+/// The fields of arrays that are read by their names, some of which the user may have changed.
+fn named(
+    names: &[String],
+    kinds: &[Type],
+    sample: &Sample,
+    path: &Path,
+    columns: &Columns,
+) -> Result<Vec<Field>, PointsError> {
+    let renamed = columns.renamed(names, path)?;
+    let known: Vec<String> = renamed.iter().map(|name| name.clone().unwrap_or_default()).collect();
+    let fields = meaning::by_names(&known, Some(kinds), sample).into_iter().zip(renamed).zip(names);
+    let fields = fields.map(|((field, name), in_file)| match name {
+        Some(_) => field.called(in_file),
+        None => Field::left_out(field.kind),
+    });
+    Ok(fields.collect())
 }
 
 #[cfg(test)]

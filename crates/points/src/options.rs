@@ -1,5 +1,6 @@
 //! What of a point file is read.
 
+use crate::assign::Columns;
 use crate::filter::Filter;
 use crate::names;
 
@@ -13,6 +14,8 @@ pub struct ReadOptions {
     pub wanted: Wanted,
     /// Which points are kept.
     pub filter: Filter,
+    /// Which column of the file is what.
+    pub columns: Columns,
 }
 
 /// Which numbers of each point are kept beside its position.

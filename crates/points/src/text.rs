@@ -5,8 +5,12 @@
 //! that is not is an error that says which. Lines are read one at a time: what is held is the
 //! points, not the text.
 
+mod head;
 mod layout;
+mod named;
+mod sections;
 mod split;
+mod tecplot;
 
 use crate::collect::Collector;
 use crate::error::{PointsError, Quoted};
@@ -17,6 +21,7 @@ use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
 use crate::text::layout::Layout;
+use crate::text::sections::Between;
 use crate::text::split::{Separator, blanks, is_comment, quoted};
 use std::path::Path;
 
@@ -26,7 +31,7 @@ const MAX_COLUMNS: usize = 1000;
 /// Whether a file that begins so is a table: its first line that is no comment has three numbers
 /// or more, or the line after it has and it could be their names.
 pub(crate) fn sniff(start: &[u8]) -> bool {
-    layout::looks_like_table(start)
+    head::looks_like_table(start)
 }
 
 /// Reads one point a line.
@@ -37,15 +42,16 @@ pub(crate) fn read(
 ) -> Result<PointSet, PointsError> {
     let io_error = |source| PointsError::Io { path: path.into(), source };
     let start = source.fill(SAMPLE).map_err(io_error)?;
-    let layout = layout::find(start, start.len() < SAMPLE, path)?;
+    let layout = layout::find(start, start.len() < SAMPLE, path, &options.columns)?;
     source.consume(layout.mark);
 
-    let mut collector = Collector::new(&layout.fields, path, options)?;
+    let mut collector = Collector::of_named(&layout.fields, path, options)?;
     // A line of the sample's average length, less a tenth.
     let least = (layout.bytes_per_row * 9 / 10).max(2 * layout.fields.len() as u64);
     // An estimate: where there is no memory for it, there may be for the points.
     let _ = collector.expect(source.records(u64::MAX, least).min(u32::MAX.into()));
-    let mut rows = Rows { layout: &layout, found: 0, declared: layout.declared };
+    let between = Between::new(layout.kind);
+    let mut rows = Rows { layout: &layout, found: 0, declared: layout.declared, between };
     rows.read(Lines::new(&mut source, path)?, &mut collector)?;
     if let Some(declared) = rows.declared.filter(|&declared| rows.found < declared) {
         return Err(PointsError::CutOff {
@@ -57,7 +63,9 @@ pub(crate) fn read(
             bytes_found: None,
         });
     }
-    collector.finish(&layout.in_words)
+    let mut set = collector.finish(&layout.in_words)?;
+    set.notes.extend(layout.notes.iter().cloned().chain(rows.between.note()));
+    Ok(set)
 }
 
 struct Rows<'a> {
@@ -66,6 +74,8 @@ struct Rows<'a> {
     found: u64,
     /// How many points the lines that count them declare, all together.
     declared: Option<u64>,
+    /// What follows a line that is no row.
+    between: Between,
 }
 
 impl Rows<'_> {
@@ -80,10 +90,13 @@ impl Rows<'_> {
         while let Some(line) = lines.next()? {
             number += 1;
             // Names and counts above the first point were understood already.
-            if number < layout.first_row || is_comment(line) {
+            if number < layout.first_row || is_comment(line) || self.between.passes_over(line) {
                 continue;
             }
             let read = match layout.separator {
+                Separator::Blanks if line.contains(&b'"') => {
+                    row_of(layout.separator.words(line).into_iter(), layout, &mut row)
+                }
                 Separator::Blanks => row_of(blanks(line), layout, &mut row),
                 Separator::Byte(byte) if line.contains(&b'"') => {
                     let words = quoted(line, |other| other == byte);
@@ -95,8 +108,11 @@ impl Rows<'_> {
                 }
             };
             if let Err(wrong) = read {
+                if self.between.is_end(line, self.found, self.declared) {
+                    break;
+                }
                 // Several scans in one file, each with its count above.
-                if let Some((declared, count)) = self.declared.zip(layout::count_of(line)) {
+                if let Some((declared, count)) = self.declared.zip(head::count_of(line)) {
                     self.declared = Some(declared.saturating_add(count));
                     continue;
                 }
@@ -105,6 +121,7 @@ impl Rows<'_> {
             }
             collector.push(&row)?;
             self.found += 1;
+            self.between.saw_row();
         }
         Ok(())
     }
@@ -152,6 +169,7 @@ fn row_of<'a>(
     }
     match words.next() {
         None => Ok(()),
+        Some(_) if layout.open => Ok(()),
         // A separator at the end of each line.
         Some(b"") if words.next().is_none() => Ok(()),
         Some(_) => Err(Wrong::Count(layout.columns.len() + 1 + words.count())),
@@ -160,3 +178,5 @@ fn row_of<'a>(
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_programs;

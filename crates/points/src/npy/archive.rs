@@ -6,7 +6,7 @@ use crate::error::PointsError;
 use crate::field::Type;
 use crate::meaning;
 use crate::npy::header::Header;
-use crate::npy::{HELP, MAX_COLUMNS, Rows, bits_of_colors, named_fields};
+use crate::npy::{HELP, MAX_COLUMNS, Rows, bits_of_colors, named};
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
@@ -178,8 +178,9 @@ pub(crate) fn read(
         arrays.extend(opened.map_err(|error| data_error(path, &member.name, error))?);
     }
     let table = SideBySide::new(arrays, points, path)?;
-    let fields = named_fields(&names, &kinds, &table);
-    let mut collector = Collector::new(&fields, path, options)?;
+    let sample = table.sample(kinds.iter().map(|kind| kind.is_float()).collect());
+    let fields = named(&names, &kinds, &sample, path, &options.columns)?;
+    let mut collector = Collector::of_named(&fields, path, options)?;
     collector.expect(points)?;
     table.collect(&mut collector)?;
     let from: Vec<&str> = chosen.iter().map(|&place| &*entries[place].member.name).collect();

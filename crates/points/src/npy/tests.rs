@@ -367,3 +367,46 @@ fn odd_archives_are_refused_or_read() {
         }
     }
 }
+
+/// A map of points keeps its points in rows and columns; a lattice of values is none.
+#[test]
+fn lattices_of_values_are_no_points() {
+    let values: Vec<u8> = f4(&(0..4 * 5 * 12).map(|i| i as f32).collect::<Vec<_>>());
+    let read = |shape: &str| {
+        let bytes = npy("'<f4'", false, shape, &values);
+        read_bytes(&bytes, Path::new("a.npy"), &ReadOptions::default())
+    };
+    for (shape, points) in [("(4, 20, 3)", 80), ("(4, 6, 10)", 24), ("(2, 2, 20, 3)", 80)] {
+        assert_eq!(read(shape).unwrap().len(), points, "{shape}");
+    }
+    for shape in ["(4, 5, 12)", "(12, 10, 2)", "(4, 5, 12, 1)", "(1, 4, 5, 12)", "(240, 1, 1)"] {
+        let error = read(shape).map(|set| set.format).unwrap_err().to_string();
+        let found =
+            format!("a.npy: found {shape} as the shape of the array, expected rows of points");
+        assert!(error.starts_with(&found) && error.contains("numpy.indices"), "{error}");
+    }
+}
+
+/// By numbers and, of records, by names.
+#[test]
+fn columns_are_what_the_user_says() {
+    let columns = |list: &str| ReadOptions {
+        columns: crate::assign::Columns::in_order(list).unwrap(),
+        ..ReadOptions::default()
+    };
+    let rows =
+        npy("'<f4'", false, "(2, 5)", &f4(&[9.0, 1.0, 2.0, 3.0, 4.0, 8.0, 5.0, 6.0, 7.0, 0.5]));
+    let set = read_bytes(&rows, Path::new("a.npy"), &columns("_,z,y,x,temp")).unwrap();
+    assert_eq!(set.positions, [[3.0, 2.0, 1.0], [7.0, 6.0, 5.0]]);
+    assert_eq!(set.attributes.len(), 1);
+    assert_eq!(set.attribute("temp"), Some(&Values::F32(vec![4.0, 0.5])));
+    assert!(set.notes.is_empty());
+    let record =
+        npy("[('E', '<f4'), ('N', '<f4'), ('H', '<f4')]", false, "(1,)", &f4(&[1.0, 2.0, 3.0]));
+    let set = read_bytes(&record, Path::new("a.npy"), &columns("y,x,z")).unwrap();
+    assert_eq!(set.positions, [[2.0, 1.0, 3.0]]);
+    let error = read_bytes(&record, Path::new("a.npy"), &columns("x,y,z,red")).unwrap_err();
+    assert!(
+        error.to_string().contains("found 4 as the column of 'red', expected a number from 1 to 3")
+    );
+}

@@ -1,12 +1,16 @@
 //! The shape of a table, from its first lines.
 
+use crate::assign::Columns;
 use crate::error::{PointsError, Quoted};
-use crate::field::Field;
-use crate::lines::{HELP, line_end_of, values};
-use crate::meaning::{self, SAMPLE_ROWS, Sample};
+use crate::field::{Field, Type};
+use crate::guess::{self, numbered};
+use crate::lines::{HELP, values};
+use crate::meaning::{self, Sample};
 use crate::number::number;
 use crate::text::MAX_COLUMNS;
-use crate::text::split::{Separator, is_comment};
+use crate::text::head::{Head, Kind, Numbered, columns_of, is_text, lines, mark_of};
+use crate::text::named::Names;
+use crate::text::split::Separator;
 use std::path::Path;
 
 /// What the lines of a table look like.
@@ -28,108 +32,30 @@ pub(super) struct Layout {
     pub(super) declared: Option<u64>,
     /// Average length of the first rows.
     pub(super) bytes_per_row: u64,
+    /// Which lines there are besides rows.
+    pub(super) kind: Kind,
+    /// Whether rows may go on after the columns.
+    pub(super) open: bool,
     pub(super) in_words: String,
-}
-
-/// A line of the file.
-#[derive(Clone, Copy)]
-struct Numbered<'a> {
-    /// From 1.
-    line: u64,
-    text: &'a [u8],
-}
-
-/// The beginning of a table, sorted.
-#[derive(Default)]
-struct Head<'a> {
-    comments: Vec<Numbered<'a>>,
-    /// What a line with a single number says.
-    declared: Option<u64>,
-    /// The line with names.
-    names: Option<Numbered<'a>>,
-    /// At most [`SAMPLE_ROWS`].
-    rows: Vec<Numbered<'a>>,
-}
-
-/// The columns' names.
-struct Names {
-    line: u64,
-    names: Vec<String>,
+    /// What was assumed, or passed over.
+    pub(super) notes: Vec<String>,
 }
 
 impl Layout {
     /// The name of the column at this place, counting those that are not read.
     pub(super) fn name_of(&self, column: usize) -> &str {
         let field = self.columns[..column].iter().filter(|&&read| read).count();
-        self.fields.get(field).map_or("", |field| &field.name)
-    }
-}
-
-/// What a line with a single whole number says.
-pub(super) fn count_of(line: &[u8]) -> Option<u64> {
-    std::str::from_utf8(line.trim_ascii()).ok()?.parse().ok()
-}
-
-/// Whether these bytes are text: no control characters but those between words and lines.
-fn is_text(bytes: &[u8]) -> bool {
-    let between = |byte| matches!(byte, b'\t' | b'\n' | 0x0b | 0x0c | b'\r' | 0x1a);
-    bytes.iter().all(|&byte| (byte >= b' ' && byte != 0x7f) || between(byte))
-}
-
-/// Bytes of a byte order mark.
-fn mark_of(start: &[u8]) -> usize {
-    if start.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 }
-}
-
-/// The lines of these bytes; the last one only if `whole`, or if it is the only one.
-fn lines(start: &[u8], whole: bool) -> impl Iterator<Item = Numbered<'_>> {
-    let end = line_end_of(start);
-    let complete = match start.iter().rposition(|&byte| byte == end) {
-        Some(last) if !whole => &start[..last],
-        _ => start,
-    };
-    let texts = complete.split(move |&byte| byte == end);
-    (1..)
-        .zip(texts)
-        .map(|(line, text)| Numbered { line, text: text.strip_suffix(b"\r").unwrap_or(text) })
-}
-
-/// Words of a line, and how many of them are numbers.
-fn numbers_in(line: &[u8]) -> (usize, usize) {
-    let separator = Separator::of_line(line);
-    let comma = separator.allows_decimal_comma();
-    let words = separator.words(line);
-    let numbers = words.iter().filter(|word| !word.is_empty() && number(word, comma).is_some());
-    (words.len(), numbers.count())
-}
-
-/// See [`sniff`](super::sniff).
-pub(super) fn looks_like_table(start: &[u8]) -> bool {
-    if !is_text(start) {
-        return false;
-    }
-    let contents: Vec<&[u8]> = lines(&start[mark_of(start)..], true)
-        .map(|line| line.text)
-        .filter(|line| !is_comment(line))
-        .skip_while(|line| count_of(line).is_some())
-        .take(2)
-        .collect();
-    let is_row = |line: &[u8]| {
-        let (words, numbers) = numbers_in(line);
-        numbers >= 3 && (numbers == words || Separator::of_line(line) != Separator::Blanks)
-    };
-    match contents.as_slice() {
-        [first, ..] if is_row(first) => true,
-        [first, second] if is_row(second) => {
-            let words = Separator::of_line(second).words(first).len();
-            words >= 3 && numbers_in(first).1 == 0
-        }
-        _ => false,
+        self.fields.get(field).map_or("", Field::original_name)
     }
 }
 
 /// Finds the layout of a table that begins so; `whole` tells that nothing follows.
-pub(super) fn find(start: &[u8], whole: bool, path: &Path) -> Result<Layout, PointsError> {
+pub(super) fn find(
+    start: &[u8],
+    whole: bool,
+    path: &Path,
+    columns: &Columns,
+) -> Result<Layout, PointsError> {
     let wrong = |line: u64, found: String, expected: String, help: &'static str| {
         PointsError::Line { path: path.into(), line, found, expected, help }
     };
@@ -146,7 +72,7 @@ pub(super) fn find(start: &[u8], whole: bool, path: &Path) -> Result<Layout, Poi
     }
     let head = Head::of(start, whole, path)?;
     let Some(&first) = head.rows.first() else {
-        let (line, found) = match (head.names, head.declared) {
+        let (line, found) = match (head.names_line, head.declared) {
             (Some(names), _) => (names.line, "names of columns alone"),
             (None, Some(_)) => (1, "a count alone"),
             (None, None) => (1, "no line of numbers"),
@@ -159,8 +85,12 @@ pub(super) fn find(start: &[u8], whole: bool, path: &Path) -> Result<Layout, Poi
     let separator = Separator::of(few.map(|row| row.text));
     let comma = separator.allows_decimal_comma()
         && head.rows.iter().any(|row| separator.words(row.text).iter().any(|w| w.contains(&b',')));
-    let in_first = columns_of(separator, first.text).len();
-    let names = head.names(separator, in_first);
+    let in_first = columns_of(separator, first.text);
+    let names = head.names(separator, &in_first);
+    let in_first = match &names {
+        Some(names) if names.open => names.names.len(),
+        _ => in_first.len(),
+    };
     if let Some(names) = names.as_ref().filter(|names| names.names.len() != in_first) {
         let found = format!("{} names", names.names.len());
         let expected = format!("{in_first}, as line {} has {}", first.line, values(in_first));
@@ -171,117 +101,180 @@ pub(super) fn find(start: &[u8], whole: bool, path: &Path) -> Result<Layout, Poi
         return Err(wrong(first.line, format!("{in_first} columns"), expected, "leave some out"));
     }
 
-    let columns = number_columns(&head.rows, separator, comma, in_first, names.is_some());
-    let numbers: Vec<usize> = (0..in_first).filter(|&column| columns[column]).collect();
-    let sample = sample_of(&head.rows, separator, comma, &numbers);
-    let fields = match &names {
-        Some(names) if !numbers.is_empty() => {
-            let names: Vec<_> = numbers.iter().map(|&place| names.names[place].clone()).collect();
-            meaning::by_names(&names, None, &sample)
-        }
-        None if numbers.len() >= 3 => meaning::by_place(&sample, None),
-        _ => {
-            let expected = "3 numbers or more: x y z".to_owned();
-            return Err(wrong(first.line, Quoted(first.text).to_string(), expected, HELP));
-        }
+    let mut has_numbers = match names.as_ref().and_then(|names| names.numbers.clone()) {
+        Some(stated) => stated,
+        None => number_columns(&head.rows, separator, comma, in_first, names.is_some()),
     };
-    let bytes: usize = head.rows.iter().map(|row| row.text.len() + 1).sum();
-    let left_out: Vec<String> = (names.iter().flat_map(|names| &names.names).zip(&columns))
+    let mut notes = Vec::new();
+    let find = Find { head: &head, separator, comma, path };
+    let fields = match columns.is_empty() {
+        true => find.fields(names.as_ref(), &has_numbers, &mut notes)?,
+        false => find.said(columns, names.as_ref(), &mut has_numbers)?,
+    };
+    let left_out: Vec<String> = (names.iter().flat_map(|names| &names.names).zip(&has_numbers))
         .filter(|(_, read)| !**read)
         .map(|(name, _)| meaning::printable(name))
         .collect();
+    let how = How { separator, comma, names: names.as_ref(), said: !columns.is_empty() };
+    let in_words = how.in_words(&fields, &left_out, head.rows.len());
+    if let Some(last) = head.passed_over.last() {
+        let lines = match head.passed_over.len() {
+            1 => format!("line {} is", last.line),
+            _ => format!("the lines up to {} are", last.line),
+        };
+        notes.insert(0, format!("{lines} not part of the table, and passed over"));
+    }
+    let bytes: usize = head.rows.iter().map(|row| row.text.len() + 1).sum();
     Ok(Layout {
         separator,
         comma,
         mark,
+        kind: head.kind,
+        open: names.as_ref().is_some_and(|names| names.open),
         first_row: first.line,
         shape_line: names.as_ref().map_or(first.line, |names| names.line),
         declared: head.declared,
         bytes_per_row: (bytes / head.rows.len()) as u64,
-        in_words: in_words(separator, comma, names.as_ref(), &fields, &left_out, head.rows.len()),
-        columns,
+        in_words,
+        notes,
+        columns: has_numbers,
         fields,
     })
 }
 
-impl<'a> Head<'a> {
-    fn of(start: &'a [u8], whole: bool, path: &Path) -> Result<Self, PointsError> {
-        let mut head = Self::default();
-        let mut contents = Vec::new();
-        for line in lines(start, whole) {
-            match is_comment(line.text) {
-                false => contents.push(line),
-                true if contents.len() < 2 => head.comments.push(line),
-                true => (),
+/// What is known of a table when its columns are asked for.
+struct Find<'a> {
+    head: &'a Head<'a>,
+    separator: Separator,
+    comma: bool,
+    path: &'a Path,
+}
+
+impl Find<'_> {
+    /// The columns by their names, or else by what stands in them.
+    fn fields(
+        &self,
+        names: Option<&Names>,
+        has_numbers: &[bool],
+        notes: &mut Vec<String>,
+    ) -> Result<Vec<Field>, PointsError> {
+        let numbers = places_of(has_numbers);
+        let sample = self.sample(&numbers);
+        match names {
+            Some(names) if !numbers.is_empty() => {
+                notes.extend(names.note.clone());
+                let names: Vec<_> =
+                    numbers.iter().map(|&place| names.names[place].clone()).collect();
+                Ok(meaning::by_names(&names, None, &sample))
             }
-            // Above the rows: a count, names, a remark.
-            if contents.len() == SAMPLE_ROWS + 3 {
-                break;
-            }
-        }
-        let mut contents = contents.as_slice();
-        while let [line, rest @ ..] = contents {
-            let next = rest.iter().find(|line| count_of(line.text).is_none());
-            let next = next.map_or(&[][..], |next| next.text);
-            if let Some(count) = count_of(line.text) {
-                if head.declared.is_some() {
-                    return Err(PointsError::Line {
-                        path: path.into(),
-                        line: line.line,
-                        found: format!("a second line with a single number, {count}"),
-                        expected: "points: x y z on each line".to_owned(),
-                        help: "if this is a PTX file, export it as PTS or E57",
-                    });
+            None if numbers.len() >= 3 => {
+                self.is_of_points(has_numbers)?;
+                let guess = guess::by_place(&sample, None);
+                let position = positions_of(&guess.fields);
+                // Between the coordinates of a point stands nothing else.
+                if position.is_some_and(|places| {
+                    places.iter().map(|&place| numbers[place]).max().unwrap_or(0)
+                        - places.iter().map(|&place| numbers[place]).min().unwrap_or(0)
+                        > 2
+                }) {
+                    return Err(self.no_table());
                 }
-                head.declared = Some(count);
-            } else if head.names.is_none() && is_names(line.text, next) {
-                // Between the count of atoms and the atoms of a molecule stands a remark.
-                let remark = head.declared.is_some() && !names_positions(line.text, next);
-                if !remark {
-                    head.names = Some(*line);
-                }
-            } else {
-                break;
+                notes.extend(guess.note);
+                Ok(guess.fields)
             }
-            contents = rest;
+            _ => Err(self.no_table()),
         }
-        head.rows.extend(contents.iter().take(SAMPLE_ROWS));
-        Ok(head)
     }
 
-    /// The names of the columns: from a line of their own, or from a comment that names as many
-    /// columns as there are, x, y and z among them.
-    fn names(&self, separator: Separator, columns: usize) -> Option<Names> {
-        if let Some(line) = self.names {
-            return Some(Names { line: line.line, names: columns_of(separator, line.text) });
+    /// The columns as the user says. Those that are left out are not read, whatever stands in them.
+    fn said(
+        &self,
+        columns: &Columns,
+        names: Option<&Names>,
+        has_numbers: &mut [bool],
+    ) -> Result<Vec<Field>, PointsError> {
+        let all: Vec<String> = match names {
+            Some(names) => names.names.clone(),
+            None => (0..has_numbers.len()).map(numbered).collect(),
+        };
+        let columns = match names.is_some() || columns.position(self.path)? {
+            true => columns.clone(),
+            // The position is where it would be without.
+            false => {
+                let numbers = places_of(has_numbers);
+                if numbers.len() < 3 {
+                    return Err(self.no_table());
+                }
+                let guess = guess::by_place(&self.sample(&numbers), None);
+                let mut fields: Vec<Field> =
+                    all.iter().map(|name| Field::new(name, Type::F64)).collect();
+                for (place, field) in numbers.into_iter().zip(guess.fields) {
+                    fields[place] = field;
+                }
+                columns.with_position(&fields)
+            }
+        };
+        let renamed = columns.renamed(&all, self.path)?;
+        for (place, name) in renamed.iter().enumerate() {
+            match name {
+                None => has_numbers[place] = false,
+                Some(name) if *name != all[place] && !has_numbers[place] => {
+                    return Err(PointsError::wrong(
+                        self.path,
+                        &format!("the column of '{}'", meaning::printable(name)),
+                        format!("text in column {}", place + 1),
+                        "numbers",
+                        "choose another column",
+                    ));
+                }
+                Some(_) => (),
+            }
         }
-        self.comments.iter().rev().find_map(|comment| {
-            let text = comment.text.trim_ascii_start();
-            let text = text.strip_prefix(b"//").or_else(|| text.get(1..))?;
-            let names = columns_of(separator, text);
-            let fit =
-                names.len() == columns && meaning::name_positions(names.iter().map(String::as_str));
-            fit.then_some(Names { line: comment.line, names })
-        })
+        let numbers = places_of(has_numbers);
+        let sample = self.sample(&numbers);
+        let named: Vec<String> =
+            numbers.iter().map(|&place| renamed[place].clone().unwrap_or_default()).collect();
+        let fields = meaning::by_names(&named, None, &sample).into_iter();
+        Ok(fields.zip(numbers).map(|(field, place)| field.called(all[place].trim())).collect())
+    }
+
+    /// Fails if columns of text show that the lines are something else than points: settings, a log.
+    fn is_of_points(&self, has_numbers: &[bool]) -> Result<(), PointsError> {
+        let is_text = |place: usize| !has_numbers[place];
+        let texts = (0..has_numbers.len()).filter(|&place| is_text(place)).count();
+        let is_odd = |word: &[u8]| word.iter().any(|byte| b"=:([{<".contains(byte));
+        let odd = self.head.rows.iter().any(|row| {
+            let words = self.separator.words(row.text);
+            words.iter().zip(0..has_numbers.len()).any(|(word, at)| is_text(at) && is_odd(word))
+        });
+        let alone = self.head.rows.len() == 1 && self.head.kind != Kind::Molecule;
+        if odd || texts > 2 || (texts > 0 && alone) { Err(self.no_table()) } else { Ok(()) }
+    }
+
+    fn no_table(&self) -> PointsError {
+        let first = self.head.passed_over.first().or(self.head.rows.first());
+        PointsError::Line {
+            path: self.path.into(),
+            line: first.map_or(1, |first| first.line),
+            found: first.map_or_else(String::new, |first| Quoted(first.text).to_string()),
+            expected: "3 numbers or more: x y z".to_owned(),
+            help: HELP,
+        }
+    }
+
+    fn sample(&self, numbers: &[usize]) -> Sample {
+        sample_of(&self.head.rows, self.separator, self.comma, numbers)
     }
 }
 
-/// Whether a line can be the names of the columns of the next one: it has no number, or the names
-/// of x, y and z.
-fn is_names(line: &[u8], next: &[u8]) -> bool {
-    numbers_in(line).1 == 0 || names_positions(line, next)
+fn places_of(has_numbers: &[bool]) -> Vec<usize> {
+    (0..has_numbers.len()).filter(|&column| has_numbers[column]).collect()
 }
 
-fn names_positions(line: &[u8], next: &[u8]) -> bool {
-    let names = columns_of(Separator::of_line(next), line);
-    meaning::name_positions(names.iter().map(String::as_str))
-}
-
-/// The words of a line that is the first of its kind. A separator at its end separates nothing.
-fn columns_of(separator: Separator, line: &[u8]) -> Vec<String> {
-    let mut words = separator.words(line);
-    words.pop_if(|word| word.is_empty());
-    words.into_iter().map(|word| String::from_utf8_lossy(word).into_owned()).collect()
+/// The places of x, y and z.
+fn positions_of(fields: &[Field]) -> Option<[usize; 3]> {
+    let place = |axis: &str| fields.iter().position(|field| field.name == axis);
+    Some([place("x")?, place("y")?, place("z")?])
 }
 
 /// Of each column, whether it has numbers. One without a single number in the first rows is text,
@@ -329,28 +322,37 @@ fn sample_of(
     sample
 }
 
-/// How the table is read, for the set's `format`.
-fn in_words(
+/// How the table is read.
+struct How<'a> {
     separator: Separator,
     comma: bool,
-    names: Option<&Names>,
-    fields: &[Field],
-    left_out: &[String],
-    rows: usize,
-) -> String {
-    let separator = separator.in_words();
-    let comma = if comma { ", decimal commas" } else { "" };
-    let columns = match names {
-        Some(names) => format!("names in line {}", names.line),
-        None => {
-            let by = if rows == 1 { "the first row".to_owned() } else { format!("{rows} rows") };
-            format!("no names; taken for {}, judging by {by}", meaning::listed(fields))
-        }
-    };
-    let text = match left_out {
-        [] => String::new(),
-        names if names.len() > 8 => format!("; left out for being text: {} columns", names.len()),
-        names => format!("; left out for being text: {}", names.join(" ")),
-    };
-    format!("text, separated by {separator}{comma}, {columns}{text}")
+    names: Option<&'a Names>,
+    /// Whether the user says what columns are.
+    said: bool,
+}
+
+impl How<'_> {
+    /// For the set's `format`.
+    fn in_words(&self, fields: &[Field], left_out: &[String], rows: usize) -> String {
+        let separator = self.separator.in_words();
+        let comma = if self.comma { ", decimal commas" } else { "" };
+        let columns = match (self.names, self.said) {
+            (_, true) => format!("columns as asked for: {}", meaning::listed(fields)),
+            (Some(names), _) => format!("names in line {}", names.line),
+            (None, _) => {
+                let by =
+                    if rows == 1 { "the first row".to_owned() } else { format!("{rows} rows") };
+                format!("no names; taken for {}, judging by {by}", meaning::listed(fields))
+            }
+        };
+        let text = match left_out {
+            [] => String::new(),
+            _ if self.said => String::new(),
+            names if names.len() > 8 => {
+                format!("; left out for being text: {} columns", names.len())
+            }
+            names => format!("; left out for being text: {}", names.join(" ")),
+        };
+        format!("text, separated by {separator}{comma}, {columns}{text}")
+    }
 }
