@@ -10,7 +10,7 @@ fn check(name: &str, objects: &[Vec<[f64; 3]>], k: u32) -> u64 {
     let indices: Vec<Vec<u32>> =
         objects.iter().map(|positions| (0..positions.len() as u32).collect()).collect();
     let objects: Vec<ObjectPoints<'_>> = (objects.iter().zip(&indices))
-        .map(|(positions, file_index)| ObjectPoints { positions, file_index })
+        .map(|(positions, file_index)| ObjectPoints::new(positions, file_index))
         .collect();
     let cloud = Cloud::new(&objects).expect("a cloud");
     let (lists, on_host) = Bench::open()

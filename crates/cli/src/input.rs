@@ -220,6 +220,10 @@ impl Input {
         progress.stage("sorting points", 1);
         let plan = Plan::new(&self.scene, sets, &images, crop, self.up)?;
         progress.clear();
+        for apart in &plan.apart {
+            let file = self.scene.objects[apart.object].points.display();
+            progress.note(&format!("warning: {file}: {apart}"));
+        }
         for image in &plan.cleaned {
             progress.note(&format!(
                 "warning: {}: {} pixels were changed: {}",

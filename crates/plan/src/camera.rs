@@ -1,5 +1,6 @@
 //! The view: where rays start, which way they go, and the matrices that say so in an EXR.
 
+use crate::bulk::World;
 use glam::{DMat4, DVec3, DVec4};
 use kernels::layout::{CameraParams, NONE, ORTHOGRAPHIC, PERSPECTIVE};
 use rayon::prelude::*;
@@ -16,12 +17,7 @@ const FRAMING_FILL: f64 = 0.88;
 /// A point (x, y, z) along right, up and forward stays below the frustum's upper side for an eye at
 /// height c and distance D before the origin where y − c ≤ t (z + D), and likewise on the other
 /// sides; so the extremes of ±x − t z and ±y − t z give eye and distance in closed form.
-pub(crate) fn frame(
-    sets: &[Vec<[f64; 3]>],
-    bounds: [[f64; 3]; 2],
-    image_size: [u32; 2],
-    up: Up,
-) -> Camera {
+pub(crate) fn frame(sets: &[World], bounds: [[f64; 3]; 2], image_size: [u32; 2], up: Up) -> Camera {
     let center = 0.5 * DVec3::from(bounds[0]) + 0.5 * DVec3::from(bounds[1]);
     let DVec3 { x, y, z } = FRAMING_DIRECTION;
     let (direction, up) = match up {
@@ -262,7 +258,7 @@ mod tests {
             .map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { low[axis] } else { high[axis] }))
             .collect();
         for (up, size) in [(Up::Y, [640, 480]), (Up::Z, [640, 480]), (Up::MinusY, [100, 400])] {
-            let camera = frame(&[corners.to_vec()], [low, high], size, up);
+            let camera = frame(&[corners.to_vec().into()], [low, high], size, up);
             let view = View::new(&camera, size, [0.0; 3]);
             let inside: Vec<[f32; 2]> = corners
                 .iter()
@@ -291,7 +287,7 @@ mod tests {
     #[test]
     fn a_single_point_has_a_finite_view() {
         let point = [3.0; 3];
-        let camera = frame(&[vec![point]], [point, point], [64, 48], Up::Y);
+        let camera = frame(&[vec![point].into()], [point, point], [64, 48], Up::Y);
         assert!(camera.eye.iter().chain(&camera.target).all(|x| x.is_finite()));
         assert_ne!(camera.eye, camera.target);
     }

@@ -3,6 +3,7 @@
 //! Rays start outside of everything, and hits tell what they enter and leave: a ray alone cannot know
 //! that it began inside. Normals of a file point outwards, so the points nearest to the eye know.
 
+use crate::bulk::World;
 use kernels::layout::MEDIA_WORDS;
 use points::PointSet;
 use scene::{MaterialKind, Scene};
@@ -16,7 +17,7 @@ const ASKED: usize = 8;
 pub(crate) fn media_of_eye(
     scene: &Scene,
     sets: &[Arc<PointSet>],
-    world: &[Vec<[f64; 3]>],
+    world: &[World],
     eye: [f64; 3],
 ) -> Vec<u32> {
     let inside = scene.objects.iter().zip(sets).zip(world).zip(0u32..).filter_map(

@@ -39,7 +39,7 @@ pub(crate) fn without_isolated(
 
 /// Mean distance of each point to its neighbours, in the order of the set.
 fn mean_distances(set: &PointSet, neighbors: u32) -> Result<Vec<f64>, CloudError> {
-    let object = ObjectPoints { positions: &set.positions, file_index: &set.file_index };
+    let object = ObjectPoints::new(&set.positions, &set.file_index);
     let cloud = Cloud::new(&[object])?;
     let count = cloud.points.len();
     let k = (neighbors as usize).min(count.saturating_sub(1)).max(1);

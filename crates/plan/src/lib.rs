@@ -5,6 +5,7 @@
 //! plan, and hand back the same [`layout::FilmPixel`]s for [`Plan::picture`].
 #![forbid(unsafe_code)]
 
+mod bulk;
 mod camera;
 mod colors;
 mod diagnostic;
@@ -19,6 +20,7 @@ mod objects;
 mod picture;
 mod volumes;
 
+pub use bulk::Apart;
 pub use camera::View;
 pub use diagnostic::Diagnostic;
 pub use discs::{MAX_DISC_PAIRS, screen_tiles};
@@ -28,6 +30,7 @@ pub use needs::{filter as point_filter, read_options};
 pub use picture::{Picture, Rays};
 pub use volumes::Volumes;
 
+use bulk::Bulk;
 use images::{ImageList, Use};
 use kernels::layout::{
     self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, LIGHT_DIRECTIONAL,
@@ -38,11 +41,9 @@ use kernels::layout::{
     TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
 };
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
-use points::{Cloud, CloudError, ObjectPoints, PointSet, bounds_of};
-use rayon::prelude::*;
-use scene::{Fresnel, Light, Object, Scene, Up};
+use points::{Cloud, PointSet};
+use scene::{Fresnel, Light, Scene, Up};
 pub use scene::{Primary, RayLoop, Secondary};
-use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Columns of a tile at most: a row of the ray state's images.
@@ -123,6 +124,8 @@ pub struct Plan {
     pub names: Vec<String>,
     /// How many isolated points each object lost (`drop_isolated`).
     pub isolated: Vec<u64>,
+    /// The strays of each object that has any.
+    pub apart: Vec<Apart>,
     /// Diagnostics that the film is to have, each at most once. None at first.
     pub diagnostics: Vec<Diagnostic>,
     transparent: bool,
@@ -151,26 +154,12 @@ impl Plan {
         let (sets, isolated) = drop_isolated(scene, sets)?;
         let image_size = scene.image.size;
         let window = checked_crop(crop, image_size)?;
-        let world: Vec<_> =
-            scene.objects.iter().zip(&sets).map(|(object, set)| placed(object, set)).collect();
-        let surface_sets: Vec<Arc<PointSet>> = (scene.objects.iter().zip(&sets))
+        let bulk = Bulk::of(scene, &sets)?;
+        let surface_sets: Vec<Arc<PointSet>> = (scene.objects.iter().zip(&bulk.sets))
             .map(|(object, set)| volumes::surface_points(object, set))
             .collect::<Result<_, _>>()?;
-        let surface_world: Vec<Cow<'_, [[f64; 3]]>> = (scene.objects.iter())
-            .zip(world.iter().zip(sets.iter().zip(&surface_sets)))
-            .map(|(object, (all, (set, surface)))| match Arc::ptr_eq(set, surface) {
-                true => Cow::Borrowed(&all[..]),
-                false => Cow::Owned(placed(object, surface)),
-            })
-            .collect();
-        let object_points: Vec<ObjectPoints<'_>> = surface_world
-            .iter()
-            .zip(&surface_sets)
-            .map(|(positions, set)| ObjectPoints { positions, file_index: &set.file_index })
-            .collect();
-        let bounds = bounds_of(world.iter().map(Vec::as_slice)).ok_or(CloudError::Empty)?;
-        let cloud = Cloud::within(bounds, &object_points)?;
-        let volumes = volumes::plan_volumes(scene, &sets, &world, &cloud)?;
+        let cloud = bulk.cloud(scene, &surface_sets)?;
+        let volumes = volumes::plan_volumes(scene, &bulk, &cloud)?;
         let fits = scene
             .objects
             .iter()
@@ -187,8 +176,9 @@ impl Plan {
             }
             None => NONE,
         };
-        let camera =
-            scene.camera.unwrap_or_else(|| camera::frame(&world, cloud.bounds, image_size, up));
+        let camera = scene
+            .camera
+            .unwrap_or_else(|| camera::frame(&bulk.world, cloud.bounds, image_size, up));
         let view = View::new(&camera, image_size, cloud.origin);
         let lights = scene.lights.iter().map(|light| local_light(light, cloud.origin)).collect();
         let framed = Scene { camera: Some(camera), ..scene.clone() };
@@ -201,7 +191,7 @@ impl Plan {
             secondary: scene.render.secondary,
             point_count: sets.iter().map(|set| set.len() as u64).sum(),
             volumes,
-            camera_media: inside::media_of_eye(scene, &sets, &world, camera.eye),
+            camera_media: inside::media_of_eye(scene, &bulk.sets, &bulk.world, camera.eye),
             samples: scene.image.samples,
             filter: filter::steps(scene.image.filter, scene.image.filter_width),
             camera: CameraParams { seed: scene.render.seed, ..view.params },
@@ -238,6 +228,7 @@ impl Plan {
             window,
             names: scene.objects.iter().map(|object| object.name.clone()).collect(),
             isolated,
+            apart: bulk.apart,
             diagnostics: Vec::new(),
             transparent: scene.image.transparent,
             channel_alpha,
@@ -394,12 +385,6 @@ pub fn checked_crop(crop: Option<Window>, image: [u32; 2]) -> Result<Window, Pla
             && crop.origin[axis].checked_add(crop.size[axis]).is_some_and(|end| end <= image[axis])
     });
     if inside { Ok(crop) } else { Err(PlanError::Crop { crop, image }) }
-}
-
-/// The points of an object in the world.
-fn placed(object: &Object, set: &PointSet) -> Vec<[f64; 3]> {
-    let positions = set.positions.par_iter().with_min_len(1 << 14);
-    positions.map(|&p| object.transform.apply(p)).collect()
 }
 
 /// The sets without the points that their objects drop, and how many those are.

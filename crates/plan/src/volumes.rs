@@ -2,6 +2,7 @@
 //! (\[T\] §6; docs/method.md, section 7).
 
 use crate::PlanError;
+use crate::bulk::Bulk;
 use crate::colors::{attribute_values, mapped};
 use kernels::layout::{
     CELL_ABOVE, CELL_BELOW, CELL_LOOK, CELL_NOTHING, GridInfo, Point, Polynomial, VOLUME_AVERAGE,
@@ -86,7 +87,7 @@ fn neighborhoods(
     neighbors: usize,
 ) -> Result<Vec<Vec<[f64; 3]>>, PlanError> {
     let file_index: Vec<u32> = (0..positions.len() as u32).collect();
-    let cloud = Cloud::new(&[ObjectPoints { positions, file_index: &file_index }])?;
+    let cloud = Cloud::new(&[ObjectPoints::new(positions, &file_index)])?;
     let count = cloud.points.len();
     let k = neighbors.min(count.saturating_sub(1)).max(1);
     let lists = NeighborSearch::new(&cloud.points, 0).nearest(0..count, k);
@@ -142,23 +143,22 @@ fn spacing(positions: &[[f64; 3]]) -> Result<f64, PlanError> {
     Ok(all.iter().map(farthest).sum::<f64>() / all.len().max(1) as f64)
 }
 
-/// Lists the points of every volume. `world` has the points of each object in the world.
+/// Lists the points of every volume.
 pub(crate) fn plan_volumes(
     scene: &Scene,
-    sets: &[Arc<PointSet>],
-    world: &[Vec<[f64; 3]>],
+    bulk: &Bulk,
     cloud: &Cloud,
 ) -> Result<Volumes, PlanError> {
     let origin = cloud.origin;
     let mut volumes = Volumes { step: f32::MAX, ..Volumes::default() };
     for (index, object) in scene.objects.iter().enumerate() {
         let Some(volume) = &object.volume else { continue };
-        let scalars = attribute(object, &sets[index], &volume.scalar)?;
-        let positions = &world[index];
+        let (set, positions) = &bulk.particles[index];
+        let scalars = attribute(object, set, &volume.scalar)?;
         let particles = match &volume.kernel {
             VolumeKernel::Sph { smoothing_length, mass, density } => {
                 let of = Sph { smoothing_length, mass: mass.as_ref(), density: density.as_deref() };
-                of.particles(object, &sets[index], &scalars)?
+                of.particles(object, set, &scalars)?
             }
             _ => scalars.iter().map(|&scalar| Particle { length: f64::INFINITY, scalar }).collect(),
         };
@@ -171,7 +171,7 @@ pub(crate) fn plan_volumes(
                     .fold(0.0, f64::max)
             }
             (_, Some(radius)) => radius,
-            (_, None) => spacing(positions)?,
+            (_, None) => spacing(&bulk.world[index])?,
         };
         // Points that all lie in one place have no spacing, and any reach shows them alike.
         let radius = if radius > 0.0 { radius } else { 1.0 };

@@ -1,22 +1,20 @@
 //! The points of a whole scene, centred and in memory order.
 //!
-//! Coordinates are moved to the centre of the scene's bounding box in f64 before anything is f32,
+//! Coordinates are moved to the middle of the scene's bounding box in f64 before anything is f32,
 //! so survey data with offsets of 10⁶ keeps its digits. The points of an object are then sorted
-//! along a Hilbert curve: neighbours in space are neighbours in memory, and places that follow each other
-//! lie close together, which the neighbour search of a device lives by. Points that share a place of the curve
-//! are sorted along a finer one through their own box, so that a far outlier spoils nothing. A point's place there is its
-//! slot; results never depend on it, since ties go by [`Cloud::order`].
+//! along a Hilbert curve ([`crate::curve`]). A point's place there is its slot; results never depend on it,
+//! since ties go by [`Cloud::order`].
+//!
+//! Where points carry a surface, those of one object at equal f32 positions count once: the first of the file
+//! stands for all ([`Cloud::within`]).
 
+use crate::curve::{is_copy, sort_along_curve};
 use kernels::layout::Point;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// Farther than this from the centre, squares of squares of f32 coordinates would overflow.
 pub const FARTHEST: f64 = 1e12;
-
-/// Bits an axis of a place on the curve.
-const CURVE_BITS: u32 = 21;
-/// So many points that share a place on a curve may lie in any order.
-const UNSORTED: usize = 8;
 
 /// The points of one object, in world coordinates.
 #[derive(Debug, Clone, Copy)]
@@ -25,6 +23,17 @@ pub struct ObjectPoints<'a> {
     pub positions: &'a [[f64; 3]],
     /// Place in the file of each.
     pub file_index: &'a [u32],
+    /// Their places along a Hilbert curve, where somebody has sorted them already
+    /// ([`Strays::order`](crate::Strays::order)), from the same origin.
+    pub order: Option<&'a [u32]>,
+}
+
+impl<'a> ObjectPoints<'a> {
+    /// Points that are not sorted yet.
+    #[must_use]
+    pub fn new(positions: &'a [[f64; 3]], file_index: &'a [u32]) -> Self {
+        Self { positions, file_index, order: None }
+    }
 }
 
 /// Slots of one object: `first_slot .. first_slot + count`.
@@ -53,6 +62,8 @@ pub struct Cloud {
     pub objects: Vec<SlotRange>,
     /// Slots by ordinal, that is in the order of (object, place in the file).
     pub order: Vec<u32>,
+    /// Of each object, which of the points given count, ascending; `None` where all do.
+    pub counted: Vec<Option<Vec<u32>>>,
     /// The world position that was subtracted.
     pub origin: [f64; 3],
     /// World bounding box: lowest and highest corner.
@@ -87,41 +98,55 @@ pub enum CloudError {
 }
 
 impl Cloud {
-    /// Centres, sorts and numbers the points of all objects.
+    /// Centres, sorts and numbers the points of all objects, those that coincide too.
     ///
     /// # Errors
     /// Too many points, none, or points farther apart than f32 bears.
     pub fn new(objects: &[ObjectPoints<'_>]) -> Result<Self, CloudError> {
         let all = objects.iter().map(|object| object.positions);
         let bounds = bounds_of(all).ok_or(CloudError::Empty)?;
-        Self::within(bounds, objects)
+        Self::build(bounds, objects, false)
     }
 
-    /// The same in a scene that reaches farther than these points: its box is given.
+    /// The points of a scene whose box is given, which may reach farther than they. Those of one object at equal
+    /// f32 positions count once: the one that comes first in its file.
     ///
     /// # Errors
     /// As [`Cloud::new`], but for a scene without points here.
     pub fn within(bounds: [[f64; 3]; 2], objects: &[ObjectPoints<'_>]) -> Result<Self, CloudError> {
+        Self::build(bounds, objects, true)
+    }
+
+    fn build(
+        bounds: [[f64; 3]; 2],
+        objects: &[ObjectPoints<'_>],
+        once: bool,
+    ) -> Result<Self, CloudError> {
         let count: usize = objects.iter().map(|object| object.positions.len()).sum();
         let limit = u32::MAX / 4;
         if count > limit as usize {
             return Err(CloudError::TooMany { count, limit });
         }
-        let origin = [0, 1, 2].map(|axis| middle(bounds[0][axis], bounds[1][axis]));
         let mut cloud = Self {
             points: Vec::with_capacity(count),
             objects: Vec::new(),
-            order: vec![0; count],
-            origin,
+            order: Vec::with_capacity(count),
+            counted: Vec::new(),
+            origin: origin_of(bounds),
             bounds,
         };
         for (index, object) in objects.iter().enumerate() {
-            cloud.add_object(index, object)?;
+            cloud.add_object(index, object, once)?;
         }
         Ok(cloud)
     }
 
-    fn add_object(&mut self, index: usize, object: &ObjectPoints<'_>) -> Result<(), CloudError> {
+    fn add_object(
+        &mut self,
+        index: usize,
+        object: &ObjectPoints<'_>,
+        once: bool,
+    ) -> Result<(), CloudError> {
         let first = self.points.len();
         let farthest = object
             .positions
@@ -144,14 +169,34 @@ impl Cloud {
                 index,
             })
             .collect();
-        let mut places: Vec<(u64, u32)> = (0..local.len() as u32).map(|i| (0, i)).collect();
-        sort_along_curve(&local, &mut places);
-        let in_order = places.par_iter().with_min_len(PART);
-        self.points.par_extend(in_order.map(|&(_, i)| local[i as usize]));
-        for (slot, &(_, i)) in places.iter().enumerate() {
-            self.order[first + i as usize] = (first + slot) as u32;
+        let mut places: Cow<'_, [u32]> = match object.order {
+            Some(order) => Cow::Borrowed(order),
+            None => {
+                let mut places: Vec<(u64, u32)> = (0..local.len() as u32).map(|i| (0, i)).collect();
+                sort_along_curve(&local, &mut places);
+                Cow::Owned(places.into_iter().map(|(_, place)| place).collect())
+            }
+        };
+        let is_copy_of_last = |pair: &[u32]| {
+            let [a, b] = [pair[0], pair[1]].map(|place| local[place as usize].position);
+            is_copy(a, b)
+        };
+        if once && places.par_windows(2).any(is_copy_of_last) {
+            let is_first = |at: usize| at == 0 || !is_copy_of_last(&places[at - 1..=at]);
+            let firsts = (0..places.len()).filter(|&at| is_first(at));
+            places = Cow::Owned(firsts.map(|at| places[at]).collect());
         }
-        self.objects.push(SlotRange { first_slot: first as u32, count: local.len() as u32 });
+        let in_order = places.par_iter().with_min_len(PART);
+        self.points.par_extend(in_order.map(|&i| local[i as usize]));
+        let mut slots = vec![u32::MAX; local.len()];
+        for (slot, &i) in places.iter().enumerate() {
+            slots[i as usize] = (first + slot) as u32;
+        }
+        let all_count = places.len() == local.len();
+        let counts = |i: &u32| slots[*i as usize] != u32::MAX;
+        self.counted.push((!all_count).then(|| (0..local.len() as u32).filter(counts).collect()));
+        self.order.extend(slots.into_iter().filter(|&slot| slot != u32::MAX));
+        self.objects.push(SlotRange { first_slot: first as u32, count: places.len() as u32 });
         Ok(())
     }
 
@@ -160,15 +205,26 @@ impl Cloud {
     pub fn by_slot<T: Copy + Default>(&self, object: usize, values: &[T]) -> Vec<T> {
         let range = self.objects[object].range();
         let mut sorted = vec![T::default(); range.len()];
-        for (&slot, &value) in self.order[range.clone()].iter().zip(values) {
-            sorted[slot as usize - range.start] = value;
+        let mut put = |(&slot, value): (&u32, T)| sorted[slot as usize - range.start] = value;
+        let slots = self.order[range.clone()].iter();
+        match &self.counted[object] {
+            Some(counted) => {
+                slots.zip(counted.iter().map(|&i| values[i as usize])).for_each(&mut put);
+            }
+            None => slots.zip(values.iter().copied()).for_each(&mut put),
         }
         sorted
     }
 }
 
+/// What is subtracted from the positions of a scene with this box: its middle.
+#[must_use]
+pub fn origin_of([low, high]: [[f64; 3]; 2]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| middle(low[axis], high[axis]))
+}
+
 /// Halfway without overflow.
-fn middle(low: f64, high: f64) -> f64 {
+pub(crate) fn middle(low: f64, high: f64) -> f64 {
     0.5 * low + 0.5 * high
 }
 
@@ -189,101 +245,13 @@ pub fn bounds_of<'a>(sets: impl IntoIterator<Item = &'a [[f64; 3]]>) -> Option<[
     sets.into_iter().filter_map(of_set).reduce(joined)
 }
 
-/// Sorts places in `points` along a Hilbert curve through the cube around them, and those that it does not
-/// tell apart along another through theirs. Points that coincide come in the order of the file, one after
-/// another wherever there are more than [`UNSORTED`].
-fn sort_along_curve(points: &[Point], places: &mut [(u64, u32)]) {
-    let position = |place: &(u64, u32)| points[place.1 as usize].position;
-    let empty = || ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    let join = |a: ([f32; 3], [f32; 3]), b: ([f32; 3], [f32; 3])| {
-        ([0, 1, 2].map(|i| a.0[i].min(b.0[i])), [0, 1, 2].map(|i| a.1[i].max(b.1[i])))
-    };
-    let (low, high) = places
-        .par_iter()
-        .with_min_len(1 << 12)
-        .fold(empty, |bounds, place| join(bounds, (position(place), position(place))))
-        .reduce(empty, join);
-    let extent = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f32::max);
-    // What is left of coordinates this small is no order, and need not be one.
-    let is_spread = extent > f32::MIN_POSITIVE;
-    let scale =
-        f64::from((1u32 << CURVE_BITS) - 1) / f64::from(if is_spread { extent } else { 1.0 });
-    if is_spread {
-        places.par_chunks_mut(PART).flat_map_iter(|part| part.chunks_mut(AT_ONCE)).for_each(
-            |few| {
-                let mut cells = [[0; AT_ONCE]; 3];
-                for (i, place) in few.iter().enumerate() {
-                    let p = position(place);
-                    for axis in 0..3 {
-                        cells[axis][i] = (f64::from(p[axis] - low[axis]) * scale) as u32;
-                    }
-                }
-                for (place, on_curve) in few.iter_mut().zip(places_on_curve(cells)) {
-                    place.0 = on_curve;
-                }
-            },
-        );
-    } else {
-        places.par_iter_mut().for_each(|place| place.0 = 0);
-    }
-    places.par_sort_unstable();
-    if is_spread {
-        let runs = places.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > UNSORTED);
-        runs.for_each(|run| sort_along_curve(points, run));
-    }
-}
-
-/// Cells whose places are computed together, so that each step is one of a vector: six times as fast as one by one.
-const AT_ONCE: usize = 8;
-
-/// Where cells of a cube with 2^[`CURVE_BITS`] cells a side lie on the Hilbert curve through it, by the coordinates of
-/// all along each axis. After Skilling, Programming the Hilbert curve, 2004.
-#[expect(clippy::needless_range_loop, reason = "one lane of two axes, which may be the same")]
-fn places_on_curve(cells: [[u32; AT_ONCE]; 3]) -> [u64; AT_ONCE] {
-    let mut x = cells;
-    for bit in (1..CURVE_BITS).rev() {
-        let below = (1 << bit) - 1;
-        for axis in 0..3 {
-            for i in 0..AT_ONCE {
-                // All ones where the bit is set: then the first axis turns, else both change places.
-                let set = 0u32.wrapping_sub((x[axis][i] >> bit) & 1);
-                let exchanged = (x[0][i] ^ x[axis][i]) & below & !set;
-                x[0][i] ^= exchanged ^ (below & set);
-                x[axis][i] ^= exchanged;
-            }
-        }
-    }
-    std::array::from_fn(|i| {
-        let mut cell = [x[0][i], x[1][i], x[2][i]];
-        cell[1] ^= cell[0];
-        cell[2] ^= cell[1];
-        // Each bit turns those below it: what is left is the parity of the bits from each on.
-        let mut turns = cell[2] >> 1;
-        for shift in [1, 2, 4, 8, 16] {
-            turns ^= turns >> shift;
-        }
-        let [x, y, z] = cell.map(|bits| spread_bits(u64::from(bits ^ turns)));
-        x << 2 | y << 1 | z
-    })
-}
-
-/// Puts two zero bits between each of the low 21 bits.
-fn spread_bits(value: u64) -> u64 {
-    let mut x = value & 0x1f_ffff;
-    x = (x | x << 32) & 0x001f_0000_0000_ffff;
-    x = (x | x << 16) & 0x001f_0000_ff00_00ff;
-    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
-    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
-    (x | x << 2) & 0x1249_2492_4924_9249
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn cloud(positions: &[[f64; 3]]) -> Result<Cloud, CloudError> {
         let file_index: Vec<u32> = (0..positions.len() as u32).collect();
-        Cloud::new(&[ObjectPoints { positions, file_index: &file_index }])
+        Cloud::new(&[ObjectPoints::new(positions, &file_index)])
     }
 
     #[test]
@@ -308,23 +276,6 @@ mod tests {
         for (point, id) in cloud.points.iter().zip(cloud.by_slot(0, &ids)) {
             assert_eq!(point.index, id);
         }
-    }
-
-    #[test]
-    fn the_curve_goes_through_every_cell_by_steps_of_one() {
-        // Of the lowest three bits, in the corner where the curve begins.
-        let rows = (0..64).map(|i| [i % 8, i / 8]);
-        let mut cells: Vec<(u64, [u32; 3])> = rows
-            .flat_map(|[y, z]| {
-                let row: [u32; AT_ONCE] = std::array::from_fn(|x| x as u32);
-                let places = places_on_curve([row, [y; AT_ONCE], [z; AT_ONCE]]);
-                places.into_iter().zip(row.map(|x| [x, y, z]))
-            })
-            .collect();
-        cells.sort_unstable();
-        assert!(cells.iter().zip(0..).all(|(cell, place)| cell.0 == place));
-        let step = |a: [u32; 3], b: [u32; 3]| -> u32 { (0..3).map(|i| a[i].abs_diff(b[i])).sum() };
-        assert!(cells.windows(2).all(|pair| step(pair[0].1, pair[1].1) == 1));
     }
 
     /// 2^21 cells an axis, and all points but one in the same.

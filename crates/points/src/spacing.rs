@@ -34,7 +34,7 @@ fn whole(positions: &[[f64; 3]]) -> Option<f64> {
 /// Adds the distances of the first `count` points to the nearest of the others.
 fn add_distances(positions: &[[f64; 3]], count: usize, distances: &mut Vec<f64>) -> Option<()> {
     let file_index: Vec<u32> = (0..positions.len() as u32).collect();
-    let object = ObjectPoints { positions, file_index: &file_index };
+    let object = ObjectPoints::new(positions, &file_index);
     let cloud = Cloud::new(&[object]).ok()?;
     let lists = NeighborSearch::new(&cloud.points, 0).nearest(0..cloud.points.len(), 1);
     let of_the_first = cloud.points.iter().zip(&lists).filter(|(p, _)| (p.index as usize) < count);
