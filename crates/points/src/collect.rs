@@ -203,6 +203,7 @@ impl<'a> Collector<'a> {
         if set.positions.is_empty() {
             let path = self.path.into();
             return Err(match set.filtered_out {
+                0 if set.in_file() == 0 => PointsError::WithoutPoints { path },
                 0 => PointsError::NoPoints {
                     path,
                     in_file: set.in_file(),

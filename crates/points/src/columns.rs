@@ -25,7 +25,7 @@ const MAX_EXPANSION: u64 = 100;
 /// Refuses packed arrays that are far larger than the file. `bytes` is their size unpacked,
 /// `length` the file's.
 pub(crate) fn check_expansion(path: &Path, bytes: u64, length: u64) -> Result<(), PointsError> {
-    if bytes <= FREE_BYTES || bytes / MAX_EXPANSION <= length {
+    if !is_too_large(bytes, length) {
         return Ok(());
     }
     Err(PointsError::wrong(
@@ -35,6 +35,11 @@ pub(crate) fn check_expansion(path: &Path, bytes: u64, length: u64) -> Result<()
         &format!("at most {MAX_EXPANSION} times the file's {length}"),
         "save them without compression",
     ))
+}
+
+/// Whether so many bytes unpacked are refused of a file of this length.
+pub(crate) fn is_too_large(bytes: u64, length: u64) -> bool {
+    bytes > FREE_BYTES && bytes / MAX_EXPANSION > length
 }
 
 /// A file that is read at several places.

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 #[non_exhaustive]
 pub enum PointsError {
     /// The file could not be opened or read.
-    #[error("{}: cannot read the file; check its name and permissions", path.display())]
+    #[error("{}: cannot read the file; check its name and permissions", Shown(path))]
     Io {
         /// The file as given.
         path: PathBuf,
@@ -18,30 +18,44 @@ pub enum PointsError {
         source: io::Error,
     },
     /// The path is a folder's.
-    #[error("{}: found a folder, expected a point file; name a file in it", path.display())]
+    #[error("{}: found a folder, expected a point file; name a file in it", Shown(path))]
     IsFolder {
         /// The path as given.
         path: PathBuf,
     },
     /// The file has no bytes.
-    #[error("{}: the file is empty, expected a point file; export it again", path.display())]
+    #[error("{}: the file is empty, expected a point file; export it again", Shown(path))]
     Empty {
         /// The file as given.
         path: PathBuf,
     },
     /// The contents are of a kind that is not read.
-    #[error(
-        "{}: found {found}, expected a point file ({}); convert it to one of these",
-        path.display(), format::names()
-    )]
+    #[error("{}: found {found}, expected a point file ({}); {help}", Shown(path), format::names())]
     UnknownKind {
         /// The file as given.
         path: PathBuf,
         /// What the contents look like.
         found: String,
+        /// What to do.
+        help: String,
+    },
+    /// The file holds no points, but names others that do.
+    #[error(
+        "{}: found a list of {count} files ({kind}), expected points; {}",
+        Shown(path), to_open(pieces, *count)
+    )]
+    Pieces {
+        /// The file as given.
+        path: PathBuf,
+        /// What the list is called.
+        kind: String,
+        /// The first of the files, where the list is given.
+        pieces: Vec<PathBuf>,
+        /// How many files there are.
+        count: usize,
     },
     /// A line of a header, or of a text file, is not as it should be.
-    #[error("{}:{line}: found {found}, expected {expected}; {help}", path.display())]
+    #[error("{}:{line}: found {found}, expected {expected}; {help}", Shown(path))]
     Line {
         /// The file as given.
         path: PathBuf,
@@ -55,7 +69,7 @@ pub enum PointsError {
         help: &'static str,
     },
     /// The file has no such part.
-    #[error("{}: found no {missing}, expected it {place}; {help}", path.display())]
+    #[error("{}: found no {missing}, expected it {place}; {help}", Shown(path))]
     Missing {
         /// The file as given.
         path: PathBuf,
@@ -67,7 +81,7 @@ pub enum PointsError {
         help: &'static str,
     },
     /// A number or name in the file is not as it should be, or is not read.
-    #[error("{}: found {found} as {place}, expected {expected}; {help}", path.display())]
+    #[error("{}: found {found} as {place}, expected {expected}; {help}", Shown(path))]
     Wrong {
         /// The file as given.
         path: PathBuf,
@@ -84,7 +98,7 @@ pub enum PointsError {
     #[error(
         "{}: the header declares {declared} {what}{}, but the file ends after {found}{}; the file \
          is cut off or its header wrong: copy or export it again",
-        path.display(), in_bytes("needing", *bytes_declared), in_bytes("in", *bytes_found)
+        Shown(path), in_bytes("needing", *bytes_declared), in_bytes("in", *bytes_found)
     )]
     CutOff {
         /// The file as given.
@@ -104,7 +118,7 @@ pub enum PointsError {
     #[error(
         "{}: found a list of length {length} in property '{property}' of {element} {index} (from \
          0), expected 0 or more; the file is damaged: copy or export it again",
-        path.display()
+        Shown(path)
     )]
     ListLength {
         /// The file as given.
@@ -121,7 +135,8 @@ pub enum PointsError {
     /// The file has more points than indices of 32 bits can tell apart.
     #[error(
         "{}: found {found} points, at most {} are possible; thin them out",
-        path.display(), u32::MAX
+        Shown(path),
+        u32::MAX
     )]
     TooMany {
         /// The file as given.
@@ -129,11 +144,20 @@ pub enum PointsError {
         /// How many there are.
         found: u64,
     },
+    /// The file has no points.
+    #[error(
+        "{}: the file holds no points, not even unusable ones; export it again with points",
+        Shown(path)
+    )]
+    WithoutPoints {
+        /// The file as given.
+        path: PathBuf,
+    },
     /// No point has a usable position.
     #[error(
         "{}: found no usable point: {in_file} in the file, {non_finite} of them dropped for a \
          coordinate that is infinite or not a number{}; export points with finite positions",
-        path.display(), if *invalid > 0 { format!(", {invalid} marked invalid") } else { String::new() }
+        Shown(path), if *invalid > 0 { format!(", {invalid} marked invalid") } else { String::new() }
     )]
     NoPoints {
         /// The file as given.
@@ -146,7 +170,7 @@ pub enum PointsError {
         invalid: u64,
     },
     /// The filter keeps no point.
-    #[error("{}: the filter ({filter}) keeps none of {usable} points; widen it", path.display())]
+    #[error("{}: the filter ({filter}) keeps none of {usable} points; widen it", Shown(path))]
     FilteredOut {
         /// The file as given.
         path: PathBuf,
@@ -156,7 +180,7 @@ pub enum PointsError {
         filter: String,
     },
     /// The machine has too little memory.
-    #[error("{}: not enough memory for {points} points; thin them out", path.display())]
+    #[error("{}: not enough memory for {points} points; thin them out", Shown(path))]
     OutOfMemory {
         /// The file as given.
         path: PathBuf,
@@ -190,6 +214,33 @@ impl PointsError {
             Self::Io { source, .. } => source.kind() == io::ErrorKind::OutOfMemory,
             _ => false,
         }
+    }
+}
+
+/// The name of a file in a message: on one line, whatever it is.
+struct Shown<'a>(&'a Path);
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shown = self.0.display().to_string();
+        for sign in shown.chars() {
+            match sign.is_control() {
+                true => write!(f, "{}", sign.escape_debug())?,
+                false => write!(f, "{sign}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What to do with a list of files.
+fn to_open(pieces: &[PathBuf], count: usize) -> String {
+    let shown: Vec<String> = pieces.iter().map(|piece| Shown(piece).to_string()).collect();
+    match count - shown.len().min(count) {
+        _ if shown.is_empty() => "save the data as VTU or VTP".to_owned(),
+        0 if count == 1 => format!("open that file: {}", shown.join(", ")),
+        0 => format!("open one of them: {}", shown.join(", ")),
+        more => format!("open one of them: {} and {more} more", shown.join(", ")),
     }
 }
 

@@ -4,13 +4,15 @@ use crate::error::PointsError;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
-use crate::{e57, las, npy, obj, off, pcd, ply, text, vtk};
+use crate::{e57, esri, las, npy, obj, off, pcd, ply, ptx, text, vtk};
 use std::path::Path;
 
 /// A format that points are read from.
 pub(crate) struct Format {
-    /// As messages call it.
+    /// As the code calls it.
     pub(crate) name: &'static str,
+    /// As messages list it.
+    listed: &'static str,
     /// Of its files, in lower case.
     pub(crate) extensions: &'static [&'static str],
     /// Whether a file may be one, by its first few kilobytes.
@@ -22,35 +24,69 @@ pub(crate) struct Format {
 /// All formats; those whose beginning is a clear sign stand before those that are told by the look
 /// of their lines.
 pub(crate) static FORMATS: &[Format] = &[
-    Format { name: "PLY", extensions: &["ply"], sniff: ply::sniff, read: ply::read },
-    Format { name: "LAS", extensions: &["las", "laz"], sniff: las::sniff, read: las::read },
-    Format { name: "E57", extensions: &["e57"], sniff: e57::sniff, read: e57::read },
-    Format { name: "PCD", extensions: &["pcd"], sniff: pcd::sniff, read: pcd::read },
-    Format { name: "NPY", extensions: &["npy"], sniff: npy::sniff, read: npy::read },
+    Format { name: "PLY", listed: "PLY", extensions: &["ply"], sniff: ply::sniff, read: ply::read },
+    Format {
+        name: "LAS",
+        listed: "LAS, LAZ",
+        extensions: &["las", "laz"],
+        sniff: las::sniff,
+        read: las::read,
+    },
+    Format { name: "E57", listed: "E57", extensions: &["e57"], sniff: e57::sniff, read: e57::read },
+    Format { name: "PCD", listed: "PCD", extensions: &["pcd"], sniff: pcd::sniff, read: pcd::read },
+    Format { name: "NPY", listed: "NPY", extensions: &["npy"], sniff: npy::sniff, read: npy::read },
     Format {
         name: "NPZ",
+        listed: "NPZ",
         extensions: &["npz"],
         sniff: npy::sniff_archive,
         read: npy::read_archive,
     },
-    Format { name: "VTK", extensions: &["vtk"], sniff: vtk::sniff_legacy, read: vtk::read_legacy },
+    Format {
+        name: "VTK",
+        listed: "VTK",
+        extensions: &["vtk"],
+        sniff: vtk::sniff_legacy,
+        read: vtk::read_legacy,
+    },
     Format {
         name: "VTK XML",
-        extensions: &["vtu", "vtp", "vts", "vtr", "vti", "pvtu", "pvtp"],
+        listed: "VTU, VTP, VTS, VTR, VTI",
+        extensions: &[
+            "vtu", "vtp", "vts", "vtr", "vti", "pvtu", "pvtp", "pvts", "pvtr", "pvti", "pvd",
+            "vtm", "vtmb", "vtpd", "vtpc",
+        ],
         sniff: vtk::sniff_xml,
         read: vtk::read_xml,
     },
     Format {
         name: "OFF",
+        listed: "OFF",
         extensions: &["off", "coff", "noff"],
         sniff: off::sniff,
         read: off::read,
     },
-    Format { name: "OBJ", extensions: &["obj"], sniff: obj::sniff, read: obj::read },
+    Format { name: "OBJ", listed: "OBJ", extensions: &["obj"], sniff: obj::sniff, read: obj::read },
+    Format {
+        name: "VTK series",
+        listed: "",
+        extensions: &["series"],
+        sniff: vtk::sniff_series,
+        read: vtk::read_series,
+    },
+    Format { name: "PTX", listed: "PTX", extensions: &["ptx"], sniff: ptx::sniff, read: ptx::read },
+    Format {
+        name: "ESRI grid",
+        listed: "ESRI ASCII grids",
+        extensions: &[],
+        sniff: esri::sniff,
+        read: esri::read,
+    },
     Format {
         name: "text",
+        listed: "tables of text: XYZ, PTS, CSV, TXT, ASC",
         extensions: &["xyz", "pts", "csv", "tsv", "txt", "asc", "dat"],
-        sniff: text::sniff,
+        sniff: |start| text::sniff(start) && !ptx::sniff(start) && !esri::sniff(start),
         read: text::read,
     },
 ];
@@ -70,7 +106,7 @@ impl Format {
     /// Which way is up in files of this format that begin so, as a rule.
     pub(crate) fn usual_up(&self, start: &[u8]) -> Upwards {
         match self.name {
-            "LAS" | "E57" => Upwards::Z,
+            "LAS" | "E57" | "PTX" | "ESRI grid" => Upwards::Z,
             "PCD" if pcd::is_organised(start) => Upwards::MinusY,
             _ => Upwards::Y,
         }
@@ -94,5 +130,6 @@ pub(crate) fn of(start: &[u8], path: &Path) -> Option<&'static Format> {
 
 /// Names of all formats, for messages.
 pub(crate) fn names() -> String {
-    FORMATS.iter().map(|format| format.name).collect::<Vec<_>>().join(", ")
+    let listed = FORMATS.iter().map(|format| format.listed).filter(|listed| !listed.is_empty());
+    listed.collect::<Vec<_>>().join(", ")
 }

@@ -365,8 +365,9 @@ mod tests {
     /// Of the vertices of several objects, some may have been painted.
     #[test]
     fn vertices_without_a_color_among_others_get_that_of_objects_without() {
+        let painted = [ColorEncoding::Fraction.decode(0.25), 0.0, 1.0];
         let set = read("v 1 2 3\nv 4 5 6 0.25 0 1\nv nan 0 0\nv 7 8 9\n");
-        assert_eq!(set.colors, Some(vec![[0.8; 3], [0.25, 0.0, 1.0], [0.8; 3]]));
+        assert_eq!(set.colors, Some(vec![[0.8; 3], painted, [0.8; 3]]));
         let note = "3 of 4 vertices have no colour and get that of objects without colours, 0.8";
         assert_eq!(set.notes, [note]);
         let set = read("v 1 2 3 1 255 128 0\nv 4 5 6 0.5\n");
@@ -377,7 +378,7 @@ mod tests {
         // The first colour may come after the part that is looked at.
         let plain = "v 1 2 3\n".repeat(SAMPLE / 8 + 10);
         let set = read(plain + "v 4 5 6 0.25 0 1\n");
-        assert_eq!(set.colors.as_ref().unwrap()[SAMPLE / 8 + 9..], [[0.8; 3], [0.25, 0.0, 1.0]]);
+        assert_eq!(set.colors.as_ref().unwrap()[SAMPLE / 8 + 9..], [[0.8; 3], painted]);
         assert_eq!(set.len(), SAMPLE / 8 + 11);
     }
 

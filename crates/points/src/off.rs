@@ -353,7 +353,7 @@ mod tests {
                 "a.off:3: found 3 values, expected x y z, a normal, a colour",
             ),
             ("OFF\n1 0 0\n0 0 zero\n", "a.off:3: found 'zero', expected a number"),
-            ("OFF\n0 0 0\n", "a.off: found no usable point: 0 in the file"),
+            ("OFF\n0 0 0\n", "a.off: the file holds no points"),
             ("OFF\n1 0 0\nnan 0 0\n", "a.off: found no usable point: 1 in the file, 1 of them"),
         ] {
             let found = try_read(text).unwrap_err().to_string();

@@ -1,10 +1,11 @@
 //! Opens point files, and finds out what they are.
 
-use crate::error::{PointsError, Quoted};
+use crate::error::PointsError;
 use crate::format::{self, Upwards};
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
+use crate::{foreign, gzip};
 use std::fs::File;
 use std::io::{Cursor, Read};
 use std::path::Path;
@@ -56,7 +57,12 @@ pub fn usual_up(path: &Path) -> Upwards {
     let is_file = path.metadata().is_ok_and(|metadata| metadata.is_file());
     let opened = is_file.then(|| File::open(path).ok()).flatten();
     let read = opened.map(|file| file.take(START as u64).read_to_end(&mut start));
-    match (read, format::of(&start, path)) {
+    let mut name = path.to_owned();
+    if gzip::sniff(&start) {
+        start = gzip::unpacked_start(&start, START);
+        name = gzip::inner_name(path);
+    }
+    match (read, format::of(&start, &name)) {
         (Some(Ok(1..)), Some(format)) => format.usual_up(&start),
         _ => Upwards::Y,
     }
@@ -81,15 +87,46 @@ fn read_source(
     path: &Path,
     options: &ReadOptions,
 ) -> Result<PointSet, PointsError> {
+    let start = start_of(&mut source, path)?;
+    if !gzip::sniff(&start) {
+        return read_contents(source, &start, path, path, options);
+    }
+    let mut source = gzip::unpacked(source);
+    let start = start_of(&mut source, path).map_err(gzip::explained)?;
+    if gzip::sniff(&start) {
+        let found = "a gzip file in a gzip file".to_owned();
+        let help = "unpack it once with gunzip".to_owned();
+        return Err(PointsError::UnknownKind { path: path.into(), found, help });
+    }
+    let set = read_contents(source, &start, path, &gzip::inner_name(path), options);
+    let mut set = set.map_err(gzip::explained)?;
+    set.format += ", packed by gzip";
+    Ok(set)
+}
+
+/// What tells the format, of which there must be some.
+fn start_of(source: &mut Source<'_>, path: &Path) -> Result<Vec<u8>, PointsError> {
     let start =
         source.fill(START).map_err(|source| PointsError::Io { path: path.into(), source })?;
     if start.is_empty() {
         return Err(PointsError::Empty { path: path.into() });
     }
-    let start = &start[..start.len().min(START)];
-    let Some(format) = format::of(start, path) else {
-        let found = format!("a file that begins with {}", Quoted(start));
-        return Err(PointsError::UnknownKind { path: path.into(), found });
-    };
-    (format.read)(source, path, options)
+    Ok(start[..start.len().min(START)].to_vec())
+}
+
+/// Reads a file that begins so. `name` is that of what is in it where it is packed.
+fn read_contents(
+    source: Source<'_>,
+    start: &[u8],
+    path: &Path,
+    name: &Path,
+    options: &ReadOptions,
+) -> Result<PointSet, PointsError> {
+    if let Some(foreign) = foreign::by_contents(start, name) {
+        return Err(foreign.error(path));
+    }
+    match format::of(start, name) {
+        Some(format) => (format.read)(source, path, options),
+        None => Err(foreign::unknown(start, name, path)),
+    }
 }

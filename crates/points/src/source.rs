@@ -1,6 +1,8 @@
 //! A file read in blocks, as bytes and as lines, or from any place.
 
+use std::cell::Cell;
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
+use std::rc::Rc;
 
 /// How much is asked of the file at once.
 const BLOCK: usize = 1 << 20;
@@ -19,6 +21,8 @@ pub(crate) struct Source<'a> {
     read: u64,
     /// Bytes read before it was begun again.
     before: u64,
+    /// Where the file is packed: bytes of it that were read, and how many it has.
+    packed: Option<(Rc<Cell<u64>>, Option<u64>)>,
 }
 
 /// Where bytes come from.
@@ -82,7 +86,7 @@ impl<'a> Source<'a> {
         // A small file needs no large buffer; one byte more, to meet the end at once.
         let known = length.and_then(|length| usize::try_from(length).ok()).unwrap_or(BLOCK);
         let buffer = vec![0; known.clamp(63, BLOCK - 1) + 1];
-        Self { file, length, progress, buffer, start: 0, end: 0, read: 0, before: 0 }
+        Self { file, length, progress, buffer, start: 0, end: 0, read: 0, before: 0, packed: None }
     }
 
     /// The whole file, to be read from any place, whatever was consumed of it.
@@ -109,6 +113,26 @@ impl<'a> Source<'a> {
             farthest: self.read,
             passes: None,
         })
+    }
+
+    /// What `unpack` makes of the file, from its beginning, whatever was shown of it. It gets the file,
+    /// how many bytes of that were read, and how many it has.
+    pub(crate) fn through(
+        self,
+        unpack: impl FnOnce(Box<dyn Read + 'a>, Rc<Cell<u64>>, Option<u64>) -> Box<dyn Read + 'a>,
+    ) -> Self {
+        debug_assert_eq!(self.read, self.end as u64, "source: bytes of the file are gone");
+        let Self { file, length, progress, mut buffer, end, read: before, .. } = self;
+        buffer.truncate(end);
+        let rest: Box<dyn Read + 'a> = match file {
+            Bytes::Stream(stream) => stream,
+            Bytes::File(file) => Box::new(file),
+        };
+        let read = Rc::new(Cell::new(0));
+        let counted = Counted { reader: Cursor::new(buffer).chain(rest), read: read.clone() };
+        let unpacked = unpack(Box::new(counted), read.clone(), length);
+        let unpacked = Self::new(Bytes::Stream(unpacked), None, progress);
+        Self { before, packed: Some((read, length)), ..unpacked }
     }
 
     /// Goes back to the beginning, and says whether it can.
@@ -152,7 +176,16 @@ impl<'a> Source<'a> {
                     Ok(count) => {
                         self.end += count;
                         self.read += count as u64;
-                        (self.progress)(self.read.max(self.before), self.length.unwrap_or(0));
+                        match &self.packed {
+                            None => (self.progress)(
+                                self.read.max(self.before),
+                                self.length.unwrap_or(0),
+                            ),
+                            Some((read, length)) => {
+                                let read = read.get().max(self.before);
+                                (self.progress)(read, length.unwrap_or(0));
+                            }
+                        }
                     }
                     Err(error) if error.kind() == io::ErrorKind::Interrupted => (),
                     Err(error) => return Err(error),
@@ -211,6 +244,20 @@ impl<'a> Source<'a> {
         self.consume(length + end);
         let line = &self.buffer[start..start + length];
         Ok(Line::Whole(line.strip_suffix(b"\r").unwrap_or(line)))
+    }
+}
+
+/// Counts what is read.
+struct Counted<R> {
+    reader: R,
+    read: Rc<Cell<u64>>,
+}
+
+impl<R: Read> Read for Counted<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.reader.read(buffer)?;
+        self.read.set(self.read.get() + count as u64);
+        Ok(count)
     }
 }
 

@@ -22,7 +22,7 @@ use crate::set::PointSet;
 use std::path::Path;
 
 pub(crate) use legacy::{read as read_legacy, sniff as sniff_legacy};
-pub(crate) use xml::{read as read_xml, sniff as sniff_xml};
+pub(crate) use xml::{read as read_xml, read_series, sniff as sniff_xml, sniff_series};
 
 /// A file with more columns of numbers a point is taken for damaged.
 const MAX_COLUMNS: usize = 1000;

@@ -3,6 +3,7 @@
 
 use peak_alloc::PeakAlloc;
 use points::{ReadOptions, read_bytes};
+use std::io::Write;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -17,7 +18,7 @@ const MOST_BYTES: usize = 64 << 20;
 const LONGEST: Duration = Duration::from_secs(1);
 
 /// Files beside those in `tests/data`.
-const TEXTS: [(&str, &str); 12] = [
+const TEXTS: [(&str, &str); 16] = [
     ("a.xyz", "1 2 3\n4.5 -6e1 7\n8 9 10\n"),
     ("a.pts", "3\n1 2 3 -100 255 0 10\n4 5 6 0 1 2 3\n7 8 9 100 4 5 6\n"),
     (
@@ -32,6 +33,17 @@ const TEXTS: [(&str, &str); 12] = [
     ("a.asc", "# a\n\n1\t2\t3\t0.6\t0\t0.8\n4\t5\t6\t0\t1\t0\n"),
     ("a.xyz", "2\nwater\nH 0 0 1.5\nO 1 2 3\n"),
     ("a.obj", "# a\nv 1 2 3 0.5 0 1\nv 4 5 \\\n6 1 1 1\nvn 0 0 1\nvn 1 0 0\nf 1//1 2//2 -1//-1\n"),
+    ("a.obj", "v 1 2 3\nv 4 5 6 0.5 0 1\nv 7 8 9 255 0 128\n"),
+    (
+        "a.ptx",
+        "2\n1\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n1 2 3 0.5 255 0 9\n0 0 0 \
+         0.5 0 0 0\n1\n1\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n4 5 6 0.5\n",
+    ),
+    (
+        "a.asc",
+        "ncols 3\nnrows 2\nxllcorner 500000.5\nyllcenter 1e6\ncellsize 10\nNODATA_value -9999\n1 2 3\n4 \
+         -9999 6\n",
+    ),
     ("a.off", "CNOFF\n# a\n2 1 0\n1 2 3 0 0 1 255 0 0 255\n4 5 6 0 1 0 0 1 2 3\n2 0 1\n"),
     ("a.off", "OFF BINARY\n\0\0\0\x01\0\0\0\0\0\0\0\0?\0\0\0@\0\0\0A\0\0\0"),
     (
@@ -42,6 +54,12 @@ const TEXTS: [(&str, &str); 12] = [
          DAAAAAAAAAAAAIA/AAAAQAAAQEA=</DataArray></Points></Piece><Piece NumberOfPoints='1'>\
          <PointData><DataArray type='Int8' Name='a'>2</DataArray></PointData><Points><DataArray \
          type='Float64' NumberOfComponents='3'>1 2 3</DataArray></Points></Piece></PolyData></VTKFile>",
+    ),
+    (
+        "b.vtp",
+        "<VTKFile type='PolyData' compressor='vtkLZMADataCompressor'><PolyData><Piece NumberOfPoints='3'>\
+         <Points><DataArray type='Float32' NumberOfComponents='3' format='binary'>AQAAACQAAAAAAAAAVAAAAA==/Td6WFoAAATm1rRGAgAhARwAAAAQz1jM4AAj\
+         ABhdAABpnmFwaF8foYEj+uqhAqSoevnJ6LSnIAD1s1Do4EMZ3QABNCQNoq+nH7bzfQEAAAAABFla</DataArray></Points></Piece></PolyData></VTKFile>",
     ),
     (
         "a.vtk",
@@ -139,6 +157,9 @@ fn damaged_files_end_in_points_or_an_error() {
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
         files.push((name, std::fs::read(path).unwrap()));
     }
+    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+    packed.write_all(TEXTS[0].1.as_bytes()).unwrap();
+    files.push(("a.xyz.gz".to_owned(), packed.finish().unwrap()));
     files.sort();
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let (mut read, mut refused) = (0, 0);

@@ -219,7 +219,7 @@ fn damaged_descriptions_say_what_is_wrong() {
         (count, "", "found none as recordCount of scan 0"),
         (count, "recordCount=\"6\"", "declares 6 points of scan 0, but the file ends after 5"),
         (count, "recordCount=\"18446744073709551615\"", "but the file ends after 5"),
-        (count, "recordCount=\"0\"", "no usable point: 0 in the file"),
+        (count, "recordCount=\"0\"", "the file holds no points"),
         ("fileOffset=\"48\"", "fileOffset=\"99999999999999\"", "found fewer as bytes of the file"),
         ("fileOffset=\"48\"", "fileOffset=\"52\"", "as the kind of the section of scan 0"),
         ("cartesianZ", "height", "found no number 'x'"),

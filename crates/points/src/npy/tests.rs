@@ -264,7 +264,7 @@ fn what_is_wrong_with_an_array_is_named() {
         ),
         (npy("'<f4'", false, "(9999999999999999, 3)", &rows), "declares 9999999999999999 points"),
         (npy("'<f4'", false, "(9999999999, 9999999999, 3)", &rows), "found the shape"),
-        (npy("'<f4'", false, "(0, 3)", &rows), "found no usable point: 0 in the file"),
+        (npy("'<f4'", false, "(0, 3)", &rows), "the file holds no points"),
         (with_header("{'descr': '<f4'}", &rows), "expected a dictionary with descr"),
         (with_header("__import__('os').system('true')", &rows), "expected a dictionary"),
         (with_header(&"[".repeat(60_000), &rows), "expected a dictionary"),
@@ -275,7 +275,8 @@ fn what_is_wrong_with_an_array_is_named() {
     ] {
         let found = message(&file);
         assert!(found.contains(expected) && found.starts_with("a.npy: "), "{expected}: {found}");
-        assert!(found.starts_with(header) || found.contains("declares"), "{found}");
+        let is_of_header = found.starts_with(header) || found.contains("no points");
+        assert!(is_of_header || found.contains("declares"), "{found}");
     }
 }
 

@@ -203,7 +203,7 @@ impl<'a> Head<'a> {
                         line: line.line,
                         found: format!("a second line with a single number, {count}"),
                         expected: "points: x y z on each line".to_owned(),
-                        help: "if this is a PTX file, export it as PTS or E57",
+                        help: "correct the line, or export the points as PTS or E57",
                     });
                 }
                 self.declared = Some(count);

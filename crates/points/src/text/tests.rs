@@ -207,7 +207,7 @@ fn what_is_wrong_is_named_with_its_line() {
         (
             "10\n20\n0 0 0\n1 0 0\n",
             "a.txt:2: found a second line with a single number, 20, expected points: x y z on \
-             each line; if this is a PTX file, export it as PTS or E57",
+             each line; correct the line, or export the points as PTS or E57",
         ),
         ("nan nan nan\n", "found no usable point: 1 in the file, 1 of them dropped"),
         ("1 2 3\n4 5 1,234.5\n7 8 9\n", "a.txt:2: found '1,234.5', expected a number for 'z'"),

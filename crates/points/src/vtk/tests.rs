@@ -269,7 +269,7 @@ mod legacy {
                 "DATASET STRUCTURED_GRID\nDIMENSIONS 2 1 1\nPOINTS 1 float\n0 0 0\n",
                 "found 2 as the number of points in DIMENSIONS, expected 1",
             ),
-            ("DATASET POLYDATA\nPOINTS 0 float\n", "found no usable point: 0 in the file"),
+            ("DATASET POLYDATA\nPOINTS 0 float\n", "the file holds no points"),
             ("DATASET POLYDATA\nPOINTS 1 float\nnan 0 0\n", "no usable point: 1 in the file, 1 of"),
             ("DATASET POLYDATA\nFIELD f 9\n", "a.vtk:6: found the end of the file, expected an"),
             (
@@ -399,8 +399,8 @@ mod xml {
         for (text, expected) in [
             (
                 HEAD.replace("PolyData", "PPolyData"),
-                "a.vtu:1: found type='PPolyData', expected PolyData: open the pieces, which this \
-                 file only lists, one by one; correct the line or export the file again",
+                "a.vtu: found a list of 0 files (the pieces of a parallel run), expected points; \
+                 save the data as VTU or VTP",
             ),
             (HEAD.replace("PolyData", "Table"), "found type='Table', expected PolyData, Unstr"),
             (HEAD.replace("Little", "Middle"), "found byte_order='MiddleEndian', expected Little"),
@@ -449,7 +449,7 @@ mod xml {
             ),
             (file("<Piece"), "a.vtu:3: found 'Piece</PolyData', expected a tag of XML"),
             (file("<!-- "), "a.vtu:5: found the end of the file, expected '>'"),
-            (file(""), "found no usable point: 0 in the file"),
+            (file(""), "the file holds no points"),
             (file(&piece("1", "nan 0 0", "")), "found no usable point: 1 in the file, 1 of them"),
         ] {
             let found = message(&text);

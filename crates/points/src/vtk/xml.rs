@@ -2,7 +2,10 @@
 
 mod markup;
 mod packed;
+mod pieces;
 mod scan;
+
+pub(crate) use pieces::{read_series, sniff_series};
 
 use crate::columns::{Coding, Numbers, Part, Records, Shared, check_expansion};
 use crate::error::PointsError;

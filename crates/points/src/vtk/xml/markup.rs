@@ -61,6 +61,21 @@ impl<'f, 'a> Markup<'f, 'a> {
         wrong_line(self.path, self.line_ends + 1, found, expected)
     }
 
+    /// As [`wrong`](Self::wrong), of what others may read.
+    pub(super) fn unread(
+        &self,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> PointsError {
+        PointsError::Line {
+            path: self.path.into(),
+            line: self.line_ends + 1,
+            found: found.into(),
+            expected: expected.into(),
+            help: "open it in ParaView and save the data as VTU or VTP with another choice",
+        }
+    }
+
     /// The next tag; `None` at the end of the file.
     pub(super) fn next(&mut self) -> Result<Option<Tag>, PointsError> {
         loop {

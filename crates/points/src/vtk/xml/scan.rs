@@ -6,6 +6,7 @@ use crate::field::Type;
 use crate::vtk::lattice::{Axis, MAX_BARE_NODES, too_many_nodes};
 use crate::vtk::xml::markup::{Markup, Tag, TagKind};
 use crate::vtk::xml::packed::{Lengths, Packing};
+use crate::vtk::xml::pieces;
 use crate::vtk::xml::{Outline, Piece, Place, Positions, Stored};
 use crate::vtk::{Described, MAX_COLUMNS, Role};
 use std::path::Path;
@@ -24,6 +25,9 @@ pub(super) fn outline(file: &Shared<'_>, path: &Path) -> Result<Outline, PointsE
     let mut scan = Scan::default();
     let mut open: Vec<String> = Vec::new();
     while let Some(tag) = markup.next()? {
+        if let (true, Some(list)) = (scan.kind.is_empty(), pieces::kind_of(&tag)) {
+            return Err(pieces::listed(&mut markup, list));
+        }
         match tag.kind {
             TagKind::Close => {
                 scan.close(&markup, &tag)?;
@@ -107,7 +111,7 @@ impl Scan {
                 let straight = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
                 if numbers(markup, tag, "Direction", straight)? != straight {
                     let expected = "1 0 0 0 1 0 0 0 1: a lattice along the axes";
-                    return Err(markup.wrong("another Direction", expected));
+                    return Err(markup.unread("another Direction", expected));
                 }
             }
             "Piece" => {
@@ -170,13 +174,7 @@ impl Scan {
         let kind = tag.get("type").unwrap_or_default();
         if !KINDS.contains(&kind) {
             let found = attribute("type", kind);
-            let expected = match kind.strip_prefix('P') {
-                Some(parts) if KINDS.contains(&parts) => {
-                    format!("{parts}: open the pieces, which this file only lists, one by one")
-                }
-                _ => KINDS.join(", "),
-            };
-            return Err(markup.wrong(found, expected));
+            return Err(markup.unread(found, KINDS.join(", ")));
         }
         let big = match tag.get("byte_order") {
             None | Some("LittleEndian") => false,
@@ -203,7 +201,7 @@ impl Scan {
                 let found = attribute("compressor", other);
                 let expected =
                     "vtkZLibDataCompressor, vtkLZ4DataCompressor or vtkLZMADataCompressor";
-                return Err(markup.wrong(found, expected));
+                return Err(markup.unread(found, expected));
             }
         };
         self.kind = kind.to_owned();
