@@ -26,6 +26,8 @@ use std::io;
 use std::path::Path;
 
 const EXPORT: &str = "the file is damaged: copy or export it again";
+/// Of what others read.
+const CONVERT: &str = "open it in CloudCompare and save it as LAS or PLY";
 
 /// First byte of a packet.
 const INDEX: u8 = 0;
@@ -41,6 +43,10 @@ enum Fault {
     Io(io::Error),
     /// The place, what was found there, and what was expected.
     Wrong(String, String, String),
+    /// The same, of what is sound but not read.
+    Unread(String, String, String),
+    /// The file has none: it may be one of images.
+    NoScans,
 }
 
 impl From<io::Error> for Fault {
@@ -54,8 +60,21 @@ impl Fault {
         Self::Wrong(place.into(), found.to_string(), expected.into())
     }
 
+    fn unread(place: impl Into<String>, found: impl ToString, expected: impl Into<String>) -> Self {
+        Self::Unread(place.into(), found.to_string(), expected.into())
+    }
+
     fn at(self, path: &Path) -> PointsError {
         match self {
+            Self::NoScans => PointsError::Missing {
+                path: path.into(),
+                missing: "scan".to_owned(),
+                place: "as data3D in the XML section".to_owned(),
+                help: "the file holds no points: export it again with its scans",
+            },
+            Self::Unread(place, found, expected) => {
+                PointsError::wrong(path, &place, found, &expected, CONVERT)
+            }
             Self::Io(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
                 let expected = "as many as its header says";
                 PointsError::wrong(path, "bytes of the file", "fewer", expected, EXPORT)

@@ -27,7 +27,7 @@ pub(crate) use xml::{read as read_xml, read_series, sniff as sniff_xml, sniff_se
 /// A file with more columns of numbers a point is taken for damaged.
 const MAX_COLUMNS: usize = 1000;
 
-const HELP: &str = "the file is damaged or of a kind that is not read: export it again";
+const HELP: &str = "open it in ParaView and save it as VTU or VTP, or export it again";
 
 /// What is known of an array before it is read.
 #[derive(Debug, Clone, PartialEq)]

@@ -44,11 +44,11 @@ impl<'a> Pages<'a> {
         let version = [u32_at(8), u32_at(12)];
         if version[0] != 1 {
             let found = format!("{}.{}", version[0], version[1]);
-            return Err(Fault::wrong("the version", found, "1.0"));
+            return Err(Fault::unread("the version", found, "1.0"));
         }
         let size = u64_at(40);
         if !SIZES.contains(&size) {
-            return Err(Fault::wrong("the size of a page", size, "64 to 1048576"));
+            return Err(Fault::unread("the size of a page", size, "64 to 1048576"));
         }
         Ok(Self {
             file,

@@ -224,7 +224,11 @@ fn damaged_descriptions_say_what_is_wrong() {
         ("fileOffset=\"48\"", "fileOffset=\"52\"", "as the kind of the section of scan 0"),
         ("cartesianZ", "height", "found no number 'x'"),
         ("<prototype", "<other", "as the XML section, expected XML"),
-        ("data3D", "data4D", "found no scan as data3D in the XML section"),
+        (
+            "data3D",
+            "data4D",
+            "found no scan, expected it as data3D in the XML section; the file holds no points",
+        ),
         ("type=\"Float\"", "type=\"Text\"", "found Text as the type of 'cartesianX' in the proto"),
         (
             "type=\"Float\" precision=\"single\"",

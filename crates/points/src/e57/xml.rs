@@ -120,7 +120,7 @@ pub(super) fn scans(text: &str) -> Result<Vec<Scan>, Fault> {
     let nodes: Vec<Node<'_, '_>> =
         children.filter(|node| node.is_element() && child(*node, "points").is_some()).collect();
     if nodes.is_empty() {
-        return Err(Fault::wrong("data3D in the XML section", "no scan", "at least one"));
+        return Err(Fault::NoScans);
     }
     nodes.into_iter().enumerate().map(|(index, node)| scan(index, node)).collect()
 }
@@ -141,7 +141,7 @@ fn scan(index: usize, node: Node<'_, '_>) -> Result<Scan, Fault> {
         .collect::<Result<_, _>>()?;
     if columns.len() > MAX_COLUMNS {
         let expected = format!("at most {MAX_COLUMNS}");
-        return Err(Fault::wrong(of_scan("numbers in the prototype"), columns.len(), expected));
+        return Err(Fault::unread(of_scan("numbers in the prototype"), columns.len(), expected));
     }
     let codecs =
         child(points, "codecs").iter().any(|codecs| codecs.children().any(|n| n.is_element()));
@@ -152,7 +152,7 @@ fn scan(index: usize, node: Node<'_, '_>) -> Result<Scan, Fault> {
                 && node.tag_name().name() != "bitPackCodec"
         });
     if packed_otherwise {
-        return Err(Fault::wrong(of_scan("codecs"), "another codec", "bitPackCodec"));
+        return Err(Fault::unread(of_scan("codecs"), "another codec", "bitPackCodec"));
     }
 
     let (rotation, translation) = pose(node);
@@ -211,7 +211,7 @@ fn column(index: usize, node: Node<'_, '_>) -> Result<Column, Fault> {
         }
         other => {
             let found = other.unwrap_or("none");
-            return Err(Fault::wrong(place("the type"), found, "Float, Integer or ScaledInteger"));
+            return Err(Fault::unread(place("the type"), found, "Float, Integer or ScaledInteger"));
         }
     };
     Ok(Column { name, codec })

@@ -4,7 +4,7 @@ use crate::collect::Collector;
 use crate::columns::{Part, Shared, SideBySide, check_expansion, data_error, fill};
 use crate::error::PointsError;
 use crate::field::Type;
-use crate::meaning;
+use crate::meaning::{self, printable};
 use crate::npy::header::Header;
 use crate::npy::{HELP, MAX_COLUMNS, Rows, bits_of_colors, named};
 use crate::options::ReadOptions;
@@ -263,6 +263,19 @@ fn members(file: &Shared<'_>, path: &Path) -> Result<Vec<Member>, PointsError> {
     };
     let whole = Part::new(file, 0, u64::MAX).buffered();
     let mut archive = ZipArchive::new(whole).map_err(damaged)?;
+    let names: Vec<_> = archive.file_names().filter_map(Result::ok).collect();
+    if !names.is_empty() && !names.iter().any(|name| name.ends_with(".npy")) {
+        const SHOWN: usize = 4;
+        let shown = names.iter().take(SHOWN).map(|name| format!("'{}'", printable(name)));
+        let shown = shown.collect::<Vec<String>>().join(", ");
+        let more = if names.len() > SHOWN { ", …" } else { "" };
+        return Err(PointsError::UnknownKind {
+            path: path.into(),
+            found: format!("a zip archive without NumPy arrays ({shown}{more})"),
+            help: "unpack it and open the point file inside".to_owned(),
+        });
+    }
+    drop(names);
     if archive.len() > MAX_ARRAYS {
         let found = format!("{} entries", archive.len());
         return Err(wrong("the archive's directory", found, &format!("at most {MAX_ARRAYS}")));
@@ -272,18 +285,22 @@ fn members(file: &Shared<'_>, path: &Path) -> Result<Vec<Member>, PointsError> {
         let entry = archive.by_index_raw(index).map_err(damaged)?;
         let name = entry.name().map_err(damaged)?;
         let Some(name) = name.strip_suffix(".npy") else { continue };
-        let place = format!("the packing of '{}'", meaning::printable(name));
+        let place = format!("the packing of '{}'", printable(name));
         if entry.encrypted() {
             return Err(wrong(&place, "encryption".to_owned(), "none"));
         }
         let deflated = match entry.compression() {
             CompressionMethod::Stored => false,
             CompressionMethod::DEFLATE => true,
-            other => return Err(wrong(&place, format!("the method {other}"), "store or deflate")),
+            other => {
+                let found = format!("the method {other}");
+                let expected = "store or deflate, which NumPy writes";
+                return Err(wrong(&place, found, expected));
+            }
         };
         let Some(start) = entry.data_start() else { continue };
         members.push(Member {
-            name: meaning::printable(name),
+            name: printable(name),
             start,
             end: start.saturating_add(entry.compressed_size()),
             size: entry.size(),

@@ -179,7 +179,8 @@ fn open(bytes: Vec<u8>, packing: Option<Packing>, length: u64) -> io::Result<Box
         }
         Some(Packing::Lz4) => {
             if length > MAX_LZ4_BLOCK {
-                return Err(damaged(format!("a block of {length} bytes")));
+                let message = format!("a block of LZ4 of {length} bytes, beyond {MAX_LZ4_BLOCK}");
+                return Err(io::Error::new(io::ErrorKind::Unsupported, message));
             }
             let unpacked = lz4_flex::block::decompress(&bytes, length as usize);
             Box::new(Cursor::new(unpacked.map_err(|error| damaged(error.to_string()))?))
@@ -402,7 +403,9 @@ mod tests {
         );
         assert!(message(&words(&[1, 6, 0, 4, 7]), 6, zlib).contains("cannot be unpacked"));
         let lz4 = Some(Packing::Lz4);
-        assert_eq!(message(&words(&[1, 1 << 30, 0, 4, 7]), 6, lz4), "a block of 1073741824 bytes");
+        let long = unpacked(&words(&[1, 1 << 30, 0, 4, 7]), 6, lz4).unwrap_err();
+        assert_eq!(long.kind(), io::ErrorKind::Unsupported);
+        assert_eq!(long.to_string(), "a block of LZ4 of 1073741824 bytes, beyond 16777216");
         let lzma = Some(Packing::Lzma);
         assert!(message(&words(&[1, 6, 0, 4, 7]), 6, lzma).contains("cannot be unpacked"));
     }
