@@ -3,70 +3,186 @@
 //! Neighbours are ordered by (d², place in the file) with d² = (dx·dx + dy·dy) + dz·dz in f32: on
 //! grids and terrains ties are the rule, and the order must not depend on the search. A k-d tree
 //! with a bounding box a node; the distance to a box is computed with the operations of d², and
-//! rounding is monotone, so no neighbour is pruned by rounding. Points that coincide share a leaf of
-//! which a query reads at most k + 1, so a million identical points cost no more than others.
+//! rounding is monotone, so no neighbour is pruned by rounding. A box also holds the least place in the
+//! file of its points, by which it is pruned where it is as far as the last neighbour: so a million
+//! points in one place, which lie there in the order of the file, cost no more than others.
+//!
+//! Eight points are a block, eight blocks a node, eight nodes one of the next level, and so on; the distances to
+//! eight points or boxes are computed together. A query begins with a bound: the distance within which the last
+//! query's neighbours lie. Points that follow each other should therefore lie close together, as those of a
+//! [`Cloud`](crate::Cloud) do; the lists do not depend on it.
+
+mod few;
+mod tree;
 
 pub use crate::spacing::median_spacing;
+pub use few::nearest_of_few;
 
 use kernels::layout::{NONE, Point};
 use rayon::prelude::*;
+use tree::{Tree, WIDTH};
 
-/// Points in a leaf, at most, unless they coincide.
-const LEAF: usize = 8;
+/// Queries that one thread takes at once.
+const QUERIES: usize = 1 << 9;
 
 /// A search structure over the points of one object.
 #[derive(Debug)]
 pub struct NeighborSearch<'a> {
     points: &'a [Point],
     first_slot: u32,
-    /// Places in `points`, leaf after leaf; within a leaf by place in the file.
-    members: Vec<u32>,
-    nodes: Vec<Node>,
+    tree: Tree,
+    /// Where in the tree each point lies, `NONE` where it was removed; empty until the first is.
+    lanes: Vec<u32>,
 }
 
+/// (d², place in the file) as one number in their order: d² is not negative.
+fn key(square: f32, index: u32) -> u64 {
+    u64::from(square.to_bits()) << 32 | u64::from(index)
+}
+
+/// Above the keys of all points, but not above those of what is empty.
+const EVERYTHING: u64 = (f32::INFINITY.to_bits() as u64) << 32 | u32::MAX as u64;
+
+/// A neighbour, or a candidate.
 #[derive(Debug, Clone, Copy)]
-struct Node {
-    low: [f32; 3],
-    high: [f32; 3],
-    /// A leaf's members, or the node's two children.
-    content: Content,
+struct Found {
+    key: u64,
+    /// In memory.
+    place: u32,
 }
 
+/// A node or block to visit.
 #[derive(Debug, Clone, Copy)]
-enum Content {
-    Leaf { first: u32, count: u32 },
-    Children([u32; 2]),
+struct Visit {
+    /// Least key that a point of it can have.
+    bound: u64,
+    /// 0: a block.
+    level: u32,
+    nth: u32,
 }
 
-/// One candidate: (d², place in the file, place in memory).
-type Found = (f32, u32, u32);
+/// The state of a query, kept from one to the next for its memory and its neighbours.
+struct Query {
+    k: usize,
+    /// In order, up to k.
+    found: Vec<Found>,
+    /// The nearest last.
+    visits: Vec<Visit>,
+    /// The point whose neighbours were found last.
+    last: Option<u32>,
+    /// Only keys below this are of interest.
+    limit: u64,
+}
+
+impl Query {
+    fn new(k: usize) -> Self {
+        Self {
+            k,
+            found: Vec::with_capacity(k),
+            visits: Vec::with_capacity(64),
+            last: None,
+            limit: EVERYTHING,
+        }
+    }
+
+    /// Empties it, after a bound for the neighbours of another point was found from those of the last: that
+    /// one and all but one of those are k others within it.
+    fn begin(&mut self, points: &[Point], at: u32) {
+        self.limit = EVERYTHING;
+        if let (Some(last), true) = (self.last, self.found.len() == self.k) {
+            let center = points[at as usize].position;
+            let square = |place: u32| squared_distance(center, points[place as usize].position);
+            // That point itself may be among them, at no distance.
+            let mut farthest = square(last);
+            for found in &self.found {
+                let square = square(found.place);
+                farthest = if square > farthest { square } else { farthest };
+            }
+            self.limit = self.limit.min((u64::from(farthest.to_bits()) + 1) << 32);
+        }
+        self.found.clear();
+        self.visits.clear();
+        self.last = Some(at);
+    }
+
+    fn insert(&mut self, candidate: Found) {
+        if self.found.len() < self.k {
+            self.found.push(candidate);
+        }
+        let found = &mut self.found[..];
+        let mut to = 0;
+        for at in (1..found.len()).rev() {
+            if found[at - 1].key <= candidate.key {
+                to = at;
+                break;
+            }
+            found[at] = found[at - 1];
+        }
+        found[to] = candidate;
+        if found.len() == self.k {
+            self.limit = self.limit.min(found[self.k - 1].key);
+        }
+    }
+
+    /// Adds what is to be visited before all that was added earlier, from place `first` of the list on in order.
+    fn visit(&mut self, first: usize, next: Visit) {
+        self.visits.push(next);
+        let added = &mut self.visits[first..];
+        let mut to = 0;
+        for at in (1..added.len()).rev() {
+            if added[at - 1].bound >= next.bound {
+                to = at;
+                break;
+            }
+            added[at] = added[at - 1];
+        }
+        added[to] = next;
+    }
+}
 
 impl<'a> NeighborSearch<'a> {
     /// Builds the tree over the points of one object, whose first slot is `first_slot`.
     #[must_use]
     pub fn new(points: &'a [Point], first_slot: u32) -> Self {
-        let mut members: Vec<u32> = (0..points.len() as u32).collect();
-        let mut nodes = Vec::with_capacity(points.len() / 2 + 1);
-        if !points.is_empty() {
-            build(points, &mut members, 0, &mut nodes);
+        Self { points, first_slot, tree: Tree::new(points), lanes: Vec::new() }
+    }
+
+    /// Leaves points out of all lists from now on; they themselves get none.
+    pub fn remove(&mut self, places: &[u32]) {
+        if self.lanes.is_empty() {
+            self.lanes = self.tree.lanes(self.points.len());
         }
-        Self { points, first_slot, members, nodes }
+        for &place in places {
+            let lane = std::mem::replace(&mut self.lanes[place as usize], NONE);
+            self.tree.remove(lane);
+        }
     }
 
     /// The k nearest others of each point of `range` (places in the slice of points), nearest first,
     /// k entries a point: slots, `NONE` where there are fewer than k others.
     #[must_use]
     pub fn nearest(&self, range: std::ops::Range<usize>, k: usize) -> Vec<u32> {
-        let mut lists = vec![NONE; range.len() * k];
-        lists.par_chunks_mut(k).enumerate().for_each_init(
-            || (Vec::with_capacity(k + 1), Vec::with_capacity(64)),
-            |(found, stack), (i, list)| {
-                self.query(range.start + i, k, found, stack);
-                for (entry, &(_, _, place)) in list.iter_mut().zip(found.iter()) {
-                    *entry = self.first_slot + place;
-                }
-            },
-        );
+        let place = |at: usize| (range.start + at) as u32;
+        self.lists(range.len(), place, k)
+    }
+
+    /// The same of some points.
+    ///
+    /// # Panics
+    /// Where one of them was removed.
+    #[must_use]
+    pub fn nearest_of(&self, places: &[u32], k: usize) -> Vec<u32> {
+        self.lists(places.len(), |at| places[at], k)
+    }
+
+    fn lists(&self, count: usize, place: impl Fn(usize) -> u32 + Sync, k: usize) -> Vec<u32> {
+        let mut lists = vec![NONE; count * k];
+        lists.par_chunks_mut(k * QUERIES).enumerate().for_each(|(part, lists)| {
+            let mut query = Query::new(k);
+            for (at, list) in (part * QUERIES..).zip(lists.chunks_mut(k)) {
+                self.find(&mut query, place(at), list);
+            }
+        });
         lists
     }
 
@@ -99,153 +215,64 @@ impl<'a> NeighborSearch<'a> {
             .collect()
     }
 
-    fn query(&self, at: usize, k: usize, found: &mut Vec<Found>, stack: &mut Vec<(f32, u32)>) {
-        found.clear();
-        stack.clear();
-        stack.push((0.0, 0));
-        let center = self.points[at].position;
-        while let Some((distance, node)) = stack.pop() {
-            if found.len() == k && found.last().is_some_and(|worst| distance > worst.0) {
+    fn find(&self, query: &mut Query, at: u32, list: &mut [u32]) {
+        let is_left = self.lanes.get(at as usize).is_none_or(|&lane| lane != NONE);
+        assert!(is_left, "the neighbours of a point that was removed");
+        query.begin(self.points, at);
+        let center = self.points[at as usize].position;
+        query.visits.push(Visit { bound: 0, level: self.tree.levels.len() as u32, nth: 0 });
+        while let Some(Visit { bound, level, nth }) = query.visits.pop() {
+            if bound >= query.limit {
                 continue;
             }
-            let node = &self.nodes[node as usize];
-            match node.content {
-                Content::Leaf { first, count } => {
-                    let members = &self.members[first as usize..(first + count) as usize];
-                    let coincide = node.low == node.high;
-                    let members =
-                        &members[..if coincide { members.len().min(k + 1) } else { members.len() }];
-                    for &member in members.iter().filter(|&&member| member as usize != at) {
-                        let point = &self.points[member as usize];
-                        insert(
-                            found,
-                            k,
-                            (squared_distance(center, point.position), point.index, member),
-                        );
+            if level == 0 {
+                let block = &self.tree.blocks[nth as usize];
+                let squares = block.distances(center);
+                for lane in lanes_within(&squares, query.limit) {
+                    let key = key(squares[lane], block.index[lane]);
+                    let place = block.place[lane];
+                    if key < query.limit && place != at {
+                        query.insert(Found { key, place });
                     }
                 }
-                Content::Children(children) => {
-                    let [near, far] =
-                        children.map(|child| (self.distance_to_box(child, center), child));
-                    let (near, far) = if far.0 < near.0 { (far, near) } else { (near, far) };
-                    stack.extend([far, near]);
+            } else {
+                let boxes = &self.tree.levels[level as usize - 1][nth as usize];
+                let squares = boxes.distances(center);
+                let first = query.visits.len();
+                for lane in lanes_within(&squares, query.limit) {
+                    let bound = key(squares[lane], boxes.least[lane]);
+                    if bound < query.limit {
+                        let nth = nth * WIDTH as u32 + lane as u32;
+                        query.visit(first, Visit { bound, level: level - 1, nth });
+                    }
                 }
             }
         }
-    }
-
-    fn distance_to_box(&self, node: u32, p: [f32; 3]) -> f32 {
-        let Node { low, high, .. } = self.nodes[node as usize];
-        distance_to_box(low, high, p)
+        for (entry, found) in list.iter_mut().zip(&query.found) {
+            *entry = self.first_slot + found.place;
+        }
     }
 }
 
-/// Points of a block, by which few points look for their neighbours.
-const BLOCK: usize = 1024;
-
-/// The same lists for a few points of an object, by a look at all the others, block after block: without a tree, whose
-/// making takes as long as many hundred such looks where points that follow each other lie together.
-#[must_use]
-pub fn nearest_of_few(
-    points: &[Point],
-    first_slot: u32,
-    few: std::ops::Range<usize>,
-    k: usize,
-) -> Vec<u32> {
-    let mut lists = vec![NONE; few.len() * k];
-    let boxes: Vec<_> = points.par_chunks(BLOCK).map(box_around).collect();
-    lists.par_chunks_mut(k).zip(few).for_each(|(list, at)| {
-        let center = points[at].position;
-        let mut blocks: Vec<(f32, usize)> =
-            boxes.iter().map(|[low, high]| distance_to_box(*low, *high, center)).zip(0..).collect();
-        blocks.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let mut found: Vec<Found> = Vec::with_capacity(k + 1);
-        for (distance, block) in blocks {
-            if found.len() == k && found.last().is_some_and(|worst| distance > worst.0) {
-                break;
-            }
-            let first = block * BLOCK;
-            let members = &points[first..points.len().min(first + BLOCK)];
-            for (place, point) in (first..).zip(members).filter(|(place, _)| *place != at) {
-                let square = squared_distance(center, point.position);
-                insert(&mut found, k, (square, point.index, place as u32));
-            }
-        }
-        for (entry, &(_, _, place)) in list.iter_mut().zip(&found) {
-            *entry = first_slot + place;
-        }
-    });
-    lists
-}
-
-/// Lowest and highest corner of the box around some points.
-fn box_around(points: &[Point]) -> [[f32; 3]; 2] {
-    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for point in points {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(point.position[axis]);
-            high[axis] = high[axis].max(point.position[axis]);
-        }
+/// The lanes whose keys may be below the limit.
+fn lanes_within(squares: &[f32; WIDTH], limit: u64) -> impl Iterator<Item = usize> {
+    let farthest = f32::from_bits((limit >> 32) as u32);
+    let mut bits = [0u32; WIDTH];
+    for (lane, (bit, square)) in bits.iter_mut().zip(squares).enumerate() {
+        *bit = if *square <= farthest { 1 << lane } else { 0 };
     }
-    [low, high]
-}
-
-/// d² of what is nearest in a box.
-fn distance_to_box(low: [f32; 3], high: [f32; 3], p: [f32; 3]) -> f32 {
-    let [x, y, z] = [0, 1, 2].map(|axis| (low[axis] - p[axis]).max(p[axis] - high[axis]).max(0.0));
-    (x * x + y * y) + z * z
+    let mut near = bits.iter().fold(0, |all, bit| all | bit);
+    std::iter::from_fn(move || {
+        let lane = near.trailing_zeros() as usize;
+        near &= near.wrapping_sub(1);
+        (lane < WIDTH).then_some(lane)
+    })
 }
 
 /// d² as every neighbour search of the project computes it.
 fn squared_distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     let [x, y, z] = [0, 1, 2].map(|axis| b[axis] - a[axis]);
     (x * x + y * y) + z * z
-}
-
-/// Keeps the k least candidates in order.
-fn insert(found: &mut Vec<Found>, k: usize, candidate: Found) {
-    let key = |f: &Found| (f.0, f.1);
-    if found.len() == k {
-        if found.last().is_none_or(|worst| key(&candidate) >= key(worst)) {
-            return;
-        }
-        found.pop();
-    }
-    let place = found.partition_point(|f| key(f) < key(&candidate));
-    found.insert(place, candidate);
-}
-
-/// Builds the node over `members`, whose first is the `first` of the whole list; returns its place.
-fn build(points: &[Point], members: &mut [u32], first: usize, nodes: &mut Vec<Node>) -> u32 {
-    let position = |member: u32| points[member as usize].position;
-    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for &member in members.iter() {
-        let p = position(member);
-        for axis in 0..3 {
-            low[axis] = low[axis].min(p[axis]);
-            high[axis] = high[axis].max(p[axis]);
-        }
-    }
-    let at = nodes.len();
-    nodes.push(Node {
-        low,
-        high,
-        content: Content::Leaf { first: first as u32, count: members.len() as u32 },
-    });
-    if members.len() <= LEAF || low == high {
-        members.sort_unstable_by_key(|&member| points[member as usize].index);
-        return at as u32;
-    }
-    let extent = [0, 1, 2].map(|axis| high[axis] - low[axis]);
-    let wider = if extent[1] > extent[0] { 1 } else { 0 };
-    let axis = if extent[2] > extent[wider] { 2 } else { wider };
-    let half = members.len() / 2;
-    members.select_nth_unstable_by(half, |&a, &b| position(a)[axis].total_cmp(&position(b)[axis]));
-    let (left, right) = members.split_at_mut(half);
-    let left = build(points, left, first, nodes);
-    let right = build(points, right, first + half, nodes);
-    nodes[at].content = Content::Children([left, right]);
-    at as u32
 }
 
 #[cfg(test)]
@@ -268,7 +295,7 @@ mod tests {
     }
 
     fn brute_force(points: &[Point], at: usize, k: usize) -> Vec<u32> {
-        let mut all: Vec<Found> = (0..points.len())
+        let mut all: Vec<(f32, u32, u32)> = (0..points.len())
             .filter(|&i| i != at)
             .map(|i| {
                 (
@@ -311,6 +338,43 @@ mod tests {
         }
     }
 
+    /// In an order that has nothing to do with where they lie, as no cloud has them.
+    #[test]
+    fn the_order_of_points_in_memory_changes_no_list() {
+        let mut seed = 11;
+        for scale in [|x: f32| x, |x: f32| (18.0 * (x - 1.0)).exp(), |x: f32| (4.0 * x).floor()] {
+            let mut set = points((0..700).map(|_| [0; 3].map(|_| scale(random(&mut seed)))));
+            for (at, point) in set.iter_mut().enumerate() {
+                point.index = (at as u32 * 257) % 1_009; // a prime, so that each is another
+            }
+            check(&set, 16);
+            check(&set, 40);
+        }
+    }
+
+    #[test]
+    fn points_that_were_removed_are_in_no_list() {
+        let mut seed = 5;
+        let mut set = points((0..600).map(|_| [0; 3].map(|_| random(&mut seed))));
+        set.extend(points([[0.5; 3]; 100]));
+        for (index, point) in (0..).zip(&mut set) {
+            point.index = index;
+        }
+        let mut search = NeighborSearch::new(&set, 30);
+        let mut left: Vec<u32> = (0..700).collect();
+        while left.len() > 50 {
+            let (gone, kept) = left.iter().partition::<Vec<u32>, _>(|_| random(&mut seed) < 0.3);
+            search.remove(&gone);
+            left = kept;
+            let others: Vec<Point> = left.iter().map(|&place| set[place as usize]).collect();
+            let expected = (0..left.len()).flat_map(|at| brute_force(&others, at, 16));
+            let expected: Vec<u32> = expected.map(|nth| left[nth as usize] + 30).collect();
+            assert_eq!(search.nearest_of(&left, 16), expected, "{} left", left.len());
+        }
+        search.remove(&left[1..]);
+        assert_eq!(search.nearest_of(&left[..1], 2), [NONE; 2]);
+    }
+
     /// Blocks that are far, near, and the last, which is not whole; many at the same distance.
     #[test]
     fn few_points_find_the_same_block_after_block() {
@@ -334,6 +398,18 @@ mod tests {
         let same = points((0..200_000).map(|_| [0.25; 3]));
         let lists = NeighborSearch::new(&same, 0).nearest(0..same.len(), 4);
         assert_eq!(lists[..8], [1, 2, 3, 4, 0, 2, 3, 4]);
+        // Among others, so that the median lies among them; and so near that all of their d² are 0.
+        let mut seed = 9;
+        let others = (0..100_000)
+            .map(|i| if i % 2 == 0 { [0.25; 3] } else { [0; 3].map(|_| random(&mut seed)) });
+        let near =
+            (0..100_000).map(|i| [1e-30 * (i % 1_000) as f32, 1e-30 * (i / 1_000) as f32, 0.0]);
+        for set in [points(others), points(near)] {
+            let lists = NeighborSearch::new(&set, 0).nearest(0..set.len(), 16);
+            for at in (0..set.len()).step_by(9_973) {
+                assert_eq!(lists[at * 16..][..16], brute_force(&set, at, 16), "point {at}");
+            }
+        }
     }
 
     /// Beside a dense line, a point far off has a reach of 100 but a smoothed size near the others'.
