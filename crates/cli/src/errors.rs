@@ -120,7 +120,10 @@ impl From<PointsError> for Failure {
 
 impl From<PlanError> for Failure {
     fn from(error: PlanError) -> Self {
-        Self::new(Exit::Usage, &error)
+        match error {
+            PlanError::Interrupted => Self::interrupted(),
+            error => Self::new(Exit::Usage, &error),
+        }
     }
 }
 

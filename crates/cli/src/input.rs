@@ -138,12 +138,16 @@ impl Input {
     /// Reads the images, each file once.
     fn read_images(&self, progress: &Progress) -> Result<SceneImages, Failure> {
         let mut read: HashMap<PathBuf, Arc<film::Image>> = HashMap::new();
-        progress.stage("reading images", self.images().count() as u64);
+        let bytes = |path: &Path| fs::metadata(path).map_or(0, |file| file.len());
+        progress.stage("reading images", self.images().map(|image| bytes(&image.path)).sum());
+        let mut done = 0;
         for image in self.images() {
             let file = same_file(&image.path);
             if let Entry::Vacant(place) = read.entry(file) {
                 place.insert(Arc::new(film::read_image(&image.path)?));
             }
+            done += bytes(&image.path);
+            progress.done(done);
         }
         progress.clear();
         let image_of = |image: &ImageFile| read.get(&same_file(&image.path)).map(Arc::clone);
@@ -217,9 +221,9 @@ impl Input {
     ) -> Result<Plan, Failure> {
         memory::require_points(sets.iter().map(|set| set.len() as u64).sum())?;
         let images = self.read_images(progress)?;
-        progress.stage("sorting points", 1);
-        let plan = Plan::new(&self.scene, sets, &images, crop, self.up)?;
+        let plan = Plan::watched(&self.scene, sets, &images, crop, self.up, progress);
         progress.clear();
+        let plan = plan?;
         for apart in &plan.apart {
             let file = self.scene.objects[apart.object].points.display();
             progress.note(&format!("warning: {file}: {apart}"));

@@ -24,6 +24,11 @@ pub struct Row {
     pub wall_ms: Spread,
     /// Time of all kernels of a frame by the device's own clock, where it has one.
     pub gpu_ms: Option<Spread>,
+    /// Reading points.
+    pub read_ms: f64,
+    /// What is done on the CPU between reading and building: images are read, isolated points dropped, points sorted,
+    /// volumes prepared.
+    pub plan_ms: f64,
     /// Fitting surfaces and building the grid.
     pub build_ms: Spread,
     /// How many builds that is of. Where there are several, the first is not among them.
@@ -175,6 +180,8 @@ pub struct Measured<'a> {
     pub trace: &'a [Duration],
     /// Of every frame.
     pub wall: &'a [Duration],
+    /// Of reading points and of planning.
+    pub prepared: [Duration; 2],
     /// Points dropped from all objects.
     pub dropped: u64,
     /// Points that the filters of all objects left out.
@@ -203,6 +210,8 @@ impl Row {
             suite: None,
             trace_ms,
             wall_ms: Spread::of(measured.wall),
+            read_ms: milliseconds(measured.prepared[0]),
+            plan_ms: milliseconds(measured.prepared[1]),
             gpu_ms: frame.gpu_ms().map(|ms| Spread { median: ms, min: ms, max: ms }),
             build_ms: Spread::of(&[built.duration]),
             builds: 1,

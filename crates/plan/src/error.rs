@@ -9,6 +9,9 @@ pub enum PlanError {
     /// The points cannot be rendered together.
     #[error(transparent)]
     Points(#[from] CloudError),
+    /// The watcher asked for an end.
+    #[error("interrupted")]
+    Interrupted,
     /// A material asks for colours that the file lacks.
     #[error(
         "object '{name}': material.albedo is \"points\" but {file} has no colours; give a colour \

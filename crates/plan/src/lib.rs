@@ -16,6 +16,7 @@ mod images;
 mod inside;
 mod isolated;
 mod needs;
+mod neighborhoods;
 mod objects;
 mod picture;
 mod volumes;
@@ -41,7 +42,7 @@ use kernels::layout::{
     TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
 };
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
-use points::{Cloud, PointSet};
+use points::{Cloud, PointSet, Unwatched, Watch};
 use scene::{Fresnel, Light, Scene, Up};
 pub use scene::{Primary, RayLoop, Secondary};
 use std::sync::Arc;
@@ -150,16 +151,36 @@ impl Plan {
         crop: Option<Window>,
         up: Up,
     ) -> Result<Self, PlanError> {
+        Self::watched(scene, sets, images, crop, up, &Unwatched)
+    }
+
+    /// The same for a watcher, who sees how far each stage is and may ask for an end.
+    ///
+    /// # Panics
+    /// As [`Plan::new`].
+    ///
+    /// # Errors
+    /// As [`Plan::new`], and [`PlanError::Interrupted`].
+    pub fn watched(
+        scene: &Scene,
+        sets: &[Arc<PointSet>],
+        images: &SceneImages,
+        crop: Option<Window>,
+        up: Up,
+        watch: &dyn Watch,
+    ) -> Result<Self, PlanError> {
         assert_eq!(scene.objects.len(), sets.len(), "one point set an object");
-        let (sets, isolated) = drop_isolated(scene, sets)?;
+        let (sets, isolated) = drop_isolated(scene, sets, watch)?;
         let image_size = scene.image.size;
         let window = checked_crop(crop, image_size)?;
+        watch.stage("sorting points", sets.iter().map(|set| set.len() as u64).sum());
         let bulk = Bulk::of(scene, &sets)?;
         let surface_sets: Vec<Arc<PointSet>> = (scene.objects.iter().zip(&bulk.sets))
-            .map(|(object, set)| volumes::surface_points(object, set))
+            .map(|(object, set)| volumes::surface_points(object, set, watch))
             .collect::<Result<_, _>>()?;
+        watch.stage("sorting points", surface_sets.iter().map(|set| set.len() as u64).sum());
         let cloud = bulk.cloud(scene, &surface_sets)?;
-        let volumes = volumes::plan_volumes(scene, &bulk, &cloud)?;
+        let volumes = volumes::plan_volumes(scene, &bulk, &cloud, watch)?;
         let fits = scene
             .objects
             .iter()
@@ -391,13 +412,14 @@ pub fn checked_crop(crop: Option<Window>, image: [u32; 2]) -> Result<Window, Pla
 fn drop_isolated(
     scene: &Scene,
     sets: &[Arc<PointSet>],
+    watch: &dyn Watch,
 ) -> Result<(Vec<Arc<PointSet>>, Vec<u64>), PlanError> {
     let mut kept = Vec::new();
     let mut counts = Vec::new();
     for (object, set) in scene.objects.iter().zip(sets) {
         let deviations = object.surface.drop_isolated;
         let near = match deviations > 0.0 {
-            true => isolated::without_isolated(set, object.surface.neighbors, deviations)?,
+            true => isolated::without_isolated(set, object.surface.neighbors, deviations, watch)?,
             false => None,
         };
         let (set, dropped) =

@@ -4,28 +4,20 @@
 use crate::PlanError;
 use crate::bulk::Bulk;
 use crate::colors::{attribute_values, mapped};
+use crate::neighborhoods::{length, open_points, spacing};
 use kernels::layout::{
-    CELL_ABOVE, CELL_BELOW, CELL_LOOK, CELL_NOTHING, GridInfo, Point, Polynomial, VOLUME_AVERAGE,
+    CELL_ABOVE, CELL_BELOW, CELL_LOOK, CELL_NOTHING, GridInfo, Polynomial, VOLUME_AVERAGE,
     VOLUME_EMISSION, VOLUME_EMITS, VOLUME_GRADIENT, VOLUME_ISOSURFACE, VOLUME_LIGHTS,
     VOLUME_MAXIMUM, VOLUME_SCATTERS, VOLUME_SHEPARD, VOLUME_SPH, VOLUME_SUM, VolumeCell,
     VolumeInfo, VolumePoint, VolumeStop,
 };
-use points::{Cloud, NeighborSearch, ObjectPoints, PointSet};
+use points::{Cloud, PointSet, Watch};
 use scene::{
     Boundary, ColorMap, MaterialKind, Object, PerParticle, Scene, Transfer, Volume, VolumeKernel,
     VolumeMode, VolumeShading,
 };
 use std::sync::Arc;
 
-/// Neighbours that the spacing of a volume's points is measured by.
-const NEIGHBORS: usize = 16;
-/// Neighbours that tell whether a point is on the boundary: of so many at random around a point inside, all
-/// are on one side of a plane through it once in four million times (Wendel 1962).
-const BOUNDARY_NEIGHBORS: usize = 32;
-/// Neighbours count as on one side up to this share of their distance beyond the plane.
-const ONE_SIDE: f64 = 0.22;
-/// Turns of the plane away from the neighbour that is farthest beyond it.
-const TURNS: usize = 24;
 /// Samples that a ray may take.
 const MOST_SAMPLES: f64 = 16_000_000.0;
 /// Cells along the longest axis: more cost more memory than they save samples.
@@ -55,13 +47,14 @@ pub struct Volumes {
 pub(crate) fn surface_points(
     object: &Object,
     set: &Arc<PointSet>,
+    watch: &dyn Watch,
 ) -> Result<Arc<PointSet>, PlanError> {
     let Some(volume) = &object.volume else { return Ok(Arc::clone(set)) };
     Ok(match &volume.boundary {
         Boundary::All => Arc::clone(set),
         Boundary::None => Arc::new(set.filtered(|_| false)),
         Boundary::Auto => {
-            let open = open_points(set)?;
+            let open = open_points(&set.positions, watch)?;
             Arc::new(set.filtered(|i| open[i]))
         }
         Boundary::Attribute(name) => {
@@ -81,73 +74,12 @@ fn attribute(object: &Object, set: &PointSet, name: &str) -> Result<Vec<f64>, Pl
     })
 }
 
-/// Vectors from each point to its nearest others, in the order of the set.
-fn neighborhoods(
-    positions: &[[f64; 3]],
-    neighbors: usize,
-) -> Result<Vec<Vec<[f64; 3]>>, PlanError> {
-    let file_index: Vec<u32> = (0..positions.len() as u32).collect();
-    let cloud = Cloud::new(&[ObjectPoints::new(positions, &file_index)])?;
-    let count = cloud.points.len();
-    let k = neighbors.min(count.saturating_sub(1)).max(1);
-    let lists = NeighborSearch::new(&cloud.points, 0).nearest(0..count, k);
-    let around = |&slot: &u32| {
-        let at = cloud.points[slot as usize].position;
-        let of = |other: &Point| [0, 1, 2].map(|i| f64::from(other.position[i] - at[i]));
-        lists[slot as usize * k..(slot as usize + 1) * k]
-            .iter()
-            .filter_map(|&other| cloud.points.get(other as usize))
-            .map(of)
-            .collect()
-    };
-    Ok(cloud.order.iter().map(around).collect())
-}
-
-fn length(v: [f64; 3]) -> f64 {
-    v.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
-/// Which points have a plane through them that has all their neighbours on one side.
-fn open_points(set: &PointSet) -> Result<Vec<bool>, PlanError> {
-    let all = neighborhoods(&set.positions, BOUNDARY_NEIGHBORS)?;
-    Ok(all.iter().map(|others| is_open(others)).collect())
-}
-
-/// Begins with the plane across the mean of all directions, and turns it.
-fn is_open(others: &[[f64; 3]]) -> bool {
-    let unit = |v: [f64; 3]| {
-        let length = length(v);
-        (length > 0.0).then(|| v.map(|x| x / length))
-    };
-    let directions: Vec<[f64; 3]> = others.iter().filter_map(|&y| unit(y)).collect();
-    let mean = [0, 1, 2].map(|axis| directions.iter().map(|y| y[axis]).sum::<f64>());
-    let mut outwards = unit(mean.map(|x| -x));
-    for _ in 0..TURNS {
-        let Some(out) = outwards else { return false };
-        let beyond = |y: &[f64; 3]| (0..3).map(|axis| y[axis] * out[axis]).sum::<f64>();
-        let Some(worst) = directions.iter().max_by(|a, b| beyond(a).total_cmp(&beyond(b))) else {
-            return true;
-        };
-        if beyond(worst) <= ONE_SIDE {
-            return true;
-        }
-        outwards = unit([0, 1, 2].map(|axis| out[axis] - 0.3 * worst[axis]));
-    }
-    false
-}
-
-/// The mean distance to the 16th neighbour.
-fn spacing(positions: &[[f64; 3]]) -> Result<f64, PlanError> {
-    let farthest = |others: &Vec<[f64; 3]>| others.iter().map(|&y| length(y)).fold(0.0, f64::max);
-    let all = neighborhoods(positions, NEIGHBORS)?;
-    Ok(all.iter().map(farthest).sum::<f64>() / all.len().max(1) as f64)
-}
-
 /// Lists the points of every volume.
 pub(crate) fn plan_volumes(
     scene: &Scene,
     bulk: &Bulk,
     cloud: &Cloud,
+    watch: &dyn Watch,
 ) -> Result<Volumes, PlanError> {
     let origin = cloud.origin;
     let mut volumes = Volumes { step: f32::MAX, ..Volumes::default() };
@@ -171,8 +103,9 @@ pub(crate) fn plan_volumes(
                     .fold(0.0, f64::max)
             }
             (_, Some(radius)) => radius,
-            (_, None) => spacing(&bulk.world[index])?,
+            (_, None) => spacing(&bulk.world[index], watch)?,
         };
+        watch.stage("sorting the points of a volume", positions.len() as u64);
         // Points that all lie in one place have no spacing, and any reach shows them alike.
         let radius = if radius > 0.0 { radius } else { 1.0 };
         let points: Vec<(VolumePoint, f32)> = positions

@@ -186,33 +186,25 @@ impl<'a> NeighborSearch<'a> {
         lists
     }
 
-    /// The feature size of each point, smoothed: the mean of its own distance to the farthest of k
-    /// neighbours and of theirs, in the units of the positions. A point apart from dense ones gets
-    /// a size like theirs, and no surface that spans the gap.
+    /// The distance of a point to the last of its list, 0 where that is empty.
     #[must_use]
-    pub fn smoothed_sizes(&self, k: usize) -> Vec<f32> {
-        let lists = self.nearest(0..self.points.len(), k);
-        let neighbors = |list: &'_ [u32]| -> Vec<usize> {
-            let slots = list.iter().take_while(|&&slot| slot != NONE);
-            slots.map(|slot| (slot - self.first_slot) as usize).collect()
-        };
-        let reach: Vec<f32> = lists
-            .par_chunks(k)
-            .zip(self.points)
-            .map(|(list, point)| {
-                let farthest = neighbors(list).last().map(|&other| self.points[other].position);
-                farthest.map_or(0.0, |other| squared_distance(point.position, other).sqrt())
-            })
-            .collect();
-        lists
-            .par_chunks(k)
-            .zip(&reach)
-            .map(|(list, own)| {
-                let others = neighbors(list);
-                others.iter().fold(*own, |sum, &other| sum + reach[other])
-                    / (others.len() + 1) as f32
-            })
-            .collect()
+    pub fn reach(&self, at: usize, list: &[u32]) -> f32 {
+        let farthest = self.listed(list).last().map(|other| self.points[other].position);
+        farthest.map_or(0.0, |far| squared_distance(self.points[at].position, far).sqrt())
+    }
+
+    /// The feature size of a point, smoothed: the mean of the [reaches](Self::reach) of it and of its list. A
+    /// point apart from dense ones gets a size like theirs, and no surface that spans the gap.
+    #[must_use]
+    pub fn smoothed_size(&self, at: usize, list: &[u32], reaches: &[f32]) -> f32 {
+        let sum = self.listed(list).fold(reaches[at], |sum, other| sum + reaches[other]);
+        sum / (self.listed(list).count() + 1) as f32
+    }
+
+    /// Places of the points in a list.
+    fn listed(&self, list: &[u32]) -> impl Iterator<Item = usize> {
+        let slots = list.iter().take_while(|&&slot| slot != NONE);
+        slots.map(|slot| (slot - self.first_slot) as usize)
     }
 
     fn find(&self, query: &mut Query, at: u32, list: &mut [u32]) {
@@ -418,10 +410,14 @@ mod tests {
         let mut line: Vec<[f32; 3]> = (0..50).map(|i| [i as f32, 0.0, 0.0]).collect();
         line.push([25.0, 100.0, 0.0]);
         let line = points(line);
-        let sizes = NeighborSearch::new(&line, 0).smoothed_sizes(4);
-        assert_eq!(sizes[25], 2.0);
+        let search = NeighborSearch::new(&line, 0);
+        let lists = search.nearest(0..51, 4);
+        let lists: Vec<&[u32]> = lists.chunks(4).collect();
+        let reaches: Vec<f32> = (0..51).map(|at| search.reach(at, lists[at])).collect();
+        let sizes = [0, 25, 50].map(|at| search.smoothed_size(at, lists[at], &reaches));
+        assert_eq!(sizes[1], 2.0);
         // Itself at 100 and a bit, its four neighbours at 2 each.
-        assert!((sizes[50] - (100.02 + 8.0) / 5.0).abs() < 0.1, "{}", sizes[50]);
+        assert!((sizes[2] - (100.02 + 8.0) / 5.0).abs() < 0.1, "{}", sizes[2]);
     }
 
     #[test]

@@ -7,7 +7,10 @@ use crate::polynomial::Polynomial;
 use crate::real::Real;
 use crate::refine::PointCells;
 use kernels::layout::{GridInfo, MOST_SKIPPED};
-use points::Grids;
+use points::{Grids, Watch};
+
+/// Points that are listed between two reports.
+const REPORTED: usize = 1 << 16;
 
 /// The points of each cell.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -51,16 +54,23 @@ fn list_in<R: Real>(grid: &Grid<R>, polynomials: &[Polynomial<R>], order: &[u32]
     PointCells { offsets, slots: pairs.into_iter().map(|pair| pair.1).collect() }
 }
 
-/// Lists the points whose trust ball meets each cell, grid after grid. `order` holds slots by ordinal.
+/// Lists the points whose trust ball meets each cell, grid after grid. `order` holds slots by ordinal. The watcher sees
+/// how many points are listed.
 #[must_use]
 pub fn build_grids<R: Real>(
     grids: &Grids,
     polynomials: &[Polynomial<R>],
     order: &[u32],
+    watch: &dyn Watch,
 ) -> CellLists {
     let mut all = CellLists::default();
+    let mut listed = 0;
     for (at, level) in grids.levels.iter().enumerate() {
-        let mut own = build_grid(&level.grid, polynomials, &grids.order_of(at, order));
+        let order = grids.order_of(at, order);
+        let mut own =
+            build_grid(&level.grid, polynomials, &order, &|more| watch.done(listed + more));
+        listed += order.len() as u64;
+        watch.done(listed);
         let first = all.slots.len() as u32;
         for range in own.cells.iter_mut().filter(|range| range[0] < range[1]) {
             *range = range.map(|entry| first + entry);
@@ -75,10 +85,20 @@ pub fn build_grids<R: Real>(
     all
 }
 
-fn build_grid<R: Real>(info: &GridInfo, polynomials: &[Polynomial<R>], order: &[u32]) -> CellLists {
+/// Calls `done` now and then with the number of points that are listed.
+fn build_grid<R: Real>(
+    info: &GridInfo,
+    polynomials: &[Polynomial<R>],
+    order: &[u32],
+    done: &dyn Fn(u64),
+) -> CellLists {
     let grid = Grid::<R>::from(info);
     let mut pairs: Vec<(u32, u32)> = Vec::new();
-    for &slot in order {
+    for (nth, &slot) in order.iter().enumerate() {
+        // Half of the work is yet to come: the sort.
+        if nth % REPORTED == 0 {
+            done(nth as u64 / 2);
+        }
         let polynomial = &polynomials[slot as usize];
         if polynomial.trust > R::of(0.0) {
             let ball = Ball::new(polynomial.center, polynomial.trust);

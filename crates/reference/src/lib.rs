@@ -57,6 +57,7 @@ use polynomial::Polynomial;
 use rayon::prelude::*;
 use real::Real;
 use refine::{PointCells, Refined, Surroundings};
+use std::borrow::Cow;
 use surface_hit::{Hit, surface_hit};
 use wave::PixelTrace;
 
@@ -88,23 +89,30 @@ pub fn fit_surfaces<R: Real>(plan: &Plan, watch: &dyn Watch) -> Option<(Vec<Fitt
     let cloud = &plan.cloud;
     let mut fitted: Vec<Fitted<R>> = Vec::with_capacity(cloud.points.len());
     let mut rims = Rims::default();
-    watch.stage("fitting surfaces", cloud.points.len() as u64);
     for (object, params) in cloud.objects.iter().zip(&plan.fits) {
         let range = object.range();
         let search = NeighborSearch::new(&cloud.points[range.clone()], object.first_slot);
         let k = params.neighbors as usize;
-        let sizes = (params.feature_size < 0.0).then(|| search.smoothed_sizes(k));
+        let smoothed = match params.feature_size < 0.0 {
+            true => Some(Smoothed::new(&search, range.len(), k, watch)?),
+            false => None,
+        };
+        watch.stage("fitting surfaces", cloud.points.len() as u64);
+        watch.done(fitted.len() as u64);
         for first in (0..range.len()).step_by(FIT_BATCH) {
             if watch.interrupted() {
                 return None;
             }
             let batch = first..range.len().min(first + FIT_BATCH);
-            let lists = search.nearest(batch.clone(), k);
+            let lists = match &smoothed {
+                Some(all) => Cow::Borrowed(&all.lists[batch.start * k..batch.end * k]),
+                None => Cow::Owned(search.nearest(batch.clone(), k)),
+            };
             let fits: Vec<_> = lists
                 .par_chunks(k)
                 .zip(range.start + first..range.start + batch.end)
                 .map(|(list, slot)| {
-                    let size = sizes.as_ref().map(|sizes| sizes[slot - range.start]);
+                    let size = smoothed.as_ref().map(|all| all.sizes[slot - range.start]);
                     fit_polynomials::fit_polynomial(&cloud.points, slot, list, params, size)
                 })
                 .collect();
@@ -120,6 +128,32 @@ pub fn fit_surfaces<R: Real>(plan: &Plan, watch: &dyn Watch) -> Option<(Vec<Fitt
         }
     }
     Some((fitted, rims))
+}
+
+/// The neighbours of all points of an object, and the sizes that those say.
+struct Smoothed {
+    lists: Vec<u32>,
+    sizes: Vec<f32>,
+}
+
+impl Smoothed {
+    /// `None` where the watcher asked for an end.
+    fn new(search: &NeighborSearch<'_>, count: usize, k: usize, watch: &dyn Watch) -> Option<Self> {
+        watch.stage("measuring feature sizes", count as u64);
+        let mut lists = Vec::with_capacity(count * k);
+        for first in (0..count).step_by(FIT_BATCH) {
+            if watch.interrupted() {
+                return None;
+            }
+            lists.extend(search.nearest(first..count.min(first + FIT_BATCH), k));
+            watch.done((lists.len() / k) as u64);
+        }
+        let each = || lists.par_chunks(k).enumerate();
+        let reaches: Vec<f32> = each().map(|(at, list)| search.reach(at, list)).collect();
+        let size = |(at, list)| search.smoothed_size(at, list, &reaches);
+        let sizes = each().map(size).collect();
+        Some(Self { lists, sizes })
+    }
 }
 
 impl<R: Real> Reference<R> {
@@ -138,7 +172,7 @@ impl<R: Real> Reference<R> {
             .collect();
         let mut polynomials: Vec<Polynomial<R>> =
             fitted.into_iter().map(|fit| fit.polynomial).collect();
-        watch.stage("building the grid", 1);
+        watch.stage("building the grid", cloud.points.len() as u64);
         let grids = plan_grids(&cloud.points, &outcomes, plan.grid_resolution, plan.takes_tree());
         let point_cells = if plan.refines() {
             grid_build::list_points(&grids, &polynomials, &cloud.order)
@@ -148,12 +182,11 @@ impl<R: Real> Reference<R> {
         for clip in rims.clips(&cloud.points, &outcomes) {
             rim::clip_ball(&mut polynomials[clip.slot as usize], &clip);
         }
-        let lists = grid_build::build_grids(&grids, &polynomials, &cloud.order);
+        let lists = grid_build::build_grids(&grids, &polynomials, &cloud.order, watch);
         polynomials.extend(plan.volumes.stand_ins().iter().map(Polynomial::from));
-        watch.done(1);
         let visible = Vec::new();
         let mut reference = Self { polynomials, outcomes, grids, lists, point_cells, visible };
-        reference.visible = point_lights(&reference, plan);
+        reference.visible = point_lights(&reference, plan, watch)?;
         Some(reference)
     }
 

@@ -11,23 +11,34 @@ use crate::real::{Real, V3};
 use crate::volume::{march, may_be_seen};
 use kernels::layout::{NONE, VOLUME_EMITS, VOLUME_LIGHTS};
 use plan::Plan;
+use points::Watch;
 use rayon::prelude::*;
 
-/// Of each light, of the points of all volumes; none where no volume is lit.
+/// Points that are lit between two looks at the watcher.
+const BATCH: usize = 1 << 10;
+
+/// Of each light, of the points of all volumes; none where no volume is lit. `None` where the watcher asked for an end.
 pub fn point_lights<R: Real>(
     reference: &Reference<R>,
     plan: &Plan,
-) -> Vec<[R; VOLUME_LIGHTS as usize]> {
+    watch: &dyn Watch,
+) -> Option<Vec<[R; VOLUME_LIGHTS as usize]>> {
     let volumes = &plan.volumes;
     if !volumes.any_lit() {
-        return Vec::new();
+        return Some(Vec::new());
     }
+    watch.stage("lighting volumes", volumes.points.len() as u64);
     let levels = Levels::<R>::from(&reference.grids);
     let mut visible = vec![[R::of(0.0); VOLUME_LIGHTS as usize]; volumes.points.len()];
     for (info, range) in volumes.point_ranges().filter(|(info, _)| info.shading != VOLUME_EMITS) {
         let media = Media::of(&[info.object]);
-        visible[range.clone()].par_iter_mut().zip(&volumes.points[range]).for_each(
-            |(of, point)| {
+        for first in range.clone().step_by(BATCH) {
+            if watch.interrupted() {
+                return None;
+            }
+            let batch = first..range.end.min(first + BATCH);
+            let (points, end) = (&volumes.points[batch.clone()], batch.end);
+            visible[batch].par_iter_mut().zip(points).for_each(|(of, point)| {
                 let x = V3::of_f32(point.position);
                 if !may_be_seen(info, volumes, x) {
                     return;
@@ -43,8 +54,9 @@ pub fn point_lights<R: Real>(
                             .transmittance;
                     }
                 }
-            },
-        );
+            });
+            watch.done(end as u64);
+        }
     }
-    visible
+    Some(visible)
 }

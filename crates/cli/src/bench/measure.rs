@@ -56,11 +56,14 @@ fn timed(
     progress: &Progress,
 ) -> Result<Row, Failure> {
     memory::require_picture(input.window(None)?, &[], 0)?;
+    let started = Instant::now();
     let sets = input.read_points(progress)?;
+    let read = started.elapsed();
     go_on()?;
     let dropped = sets.iter().map(|set| set.dropped()).sum();
     let filtered_out = sets.iter().map(|set| set.filtered_out).sum();
     let plan = input.plan(&sets, None, progress)?;
+    let planned = started.elapsed() - read;
     drop(sets);
     go_on()?;
     let (mut built, builds, prepared) = build(engine, &plan, [runs, on_cpu], progress)?;
@@ -92,6 +95,7 @@ fn timed(
         frame: &frame,
         trace: &times.trace,
         wall: &times.wall,
+        prepared: [read, planned],
         dropped,
         filtered_out,
     });

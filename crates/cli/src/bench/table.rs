@@ -47,6 +47,8 @@ const DETAILS: &[Column] = &[
     ("max", |row| Some(short(row.build_ms.max))),
     ("on the CPU ms", |row| row.cpu_preparation_ms.map(|ms| short(ms.median))),
     ("builds", |row| Some(row.builds.to_string())),
+    ("read ms", |row| Some(short(row.read_ms))),
+    ("plan ms", |row| Some(short(row.plan_ms))),
     ("pipelines ms", |row| Some(short(row.pipelines_ms))),
     ("warm-up ms", |row| row.warm_up_ms.map(short)),
     ("picture", |row| Some(row.pixels.clone())),

@@ -70,6 +70,7 @@ fn render(
     let ahead = Ahead::new(engine);
     ahead.fits(&input.scene);
     let sets = input.read_points(progress)?;
+    let read = started.elapsed();
     let dropped: u64 = sets.iter().map(|set| set.dropped()).sum();
     let filtered_out = sets.iter().map(|set| set.filtered_out).sum();
     let mut plan = input.plan(&sets, args.crop, progress)?;
@@ -82,7 +83,7 @@ fn render(
         args.outputs.iter().any(|path| FileFormat::from_path(path).ok() == Some(FileFormat::Exr));
     let provenance = exr.then(|| provenance::of(&plan, input, &sets, engine));
     drop(sets);
-    let read = started.elapsed();
+    let planned = started.elapsed() - read;
     let mut built = engine.build(&plan, progress)?;
     let frame = built.frame(&plan, progress)?;
     let wall = started.elapsed();
@@ -102,13 +103,14 @@ fn render(
             frame: &frame,
             trace: &[frame.trace],
             wall: &[wall],
+            prepared: [read, planned],
             dropped: dropped + plan.isolated.iter().sum::<u64>(),
             filtered_out,
         });
         files::write_json(path, &row)?;
     }
     interrupt::finished();
-    progress.note(&summary(args, &plan, engine, &frame, [read, built.duration]));
+    progress.note(&summary(args, &plan, engine, &frame, [read, planned, built.duration]));
     Ok(())
 }
 
@@ -166,7 +168,7 @@ fn summary(
     plan: &Plan,
     engine: &Engine,
     frame: &Frame,
-    [read, built]: [Duration; 2],
+    [read, planned, built]: [Duration; 3],
 ) -> String {
     let outputs: Vec<String> =
         args.outputs.iter().map(|output| output.display().to_string()).collect();
@@ -177,11 +179,12 @@ fn summary(
         passes => format!("{passes} passes"),
     };
     format!(
-        "{}: {points} points, {width}x{height} on {}: read {:.2} s, built {:.2} s, traced {:.2} s \
-         in {passes} -> {}",
+        "{}: {points} points, {width}x{height} on {}: read {:.2} s, planned {:.2} s, \
+         built {:.2} s, traced {:.2} s in {passes} -> {}",
         args.scene.display(),
         engine.name(),
         read.as_secs_f64(),
+        planned.as_secs_f64(),
         built.as_secs_f64(),
         frame.trace.as_secs_f64(),
         outputs.join(", ")

@@ -48,6 +48,9 @@ fn one_render_writes_every_format_and_says_nothing_when_quiet() {
             assert!(row[time][part].as_f64().expect("a number") >= 0.0, "{row}");
         }
     }
+    let spent = ["read_ms", "plan_ms"].map(|time| row[time].as_f64().expect("a number"));
+    assert!(spent.iter().all(|&ms| ms > 0.0), "{row}");
+    assert!(spent[0] + spent[1] < row["wall_ms"]["median"].as_f64().expect("a number"), "{row}");
     assert_eq!(row["points"], 2000);
     assert_eq!(row["fits"]["full"], 2000);
     assert_eq!(row["passes"], 1);

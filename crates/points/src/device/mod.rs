@@ -205,7 +205,7 @@ impl Surfaces {
             true => outcome_buffer,
             false => Buffer::new(device, "fit outcomes", size_of::<FitOutcome>() as u64)?,
         };
-        watch.stage("building the grid", 1);
+        watch.stage("building the grid", 4);
         let texels = bytes / 16 <= u64::from(device.limits().max_texel_buffer_elements);
         let count = cloud.points.len() as u32;
         let may_have_tree = needed.tree && Tree::fits(device, count);
@@ -215,6 +215,7 @@ impl Surfaces {
             false => Grids::around(&cloud.points, &outcomes),
         };
         let slab_pairs = slab_pairs(memory.points, heap.saturating_sub(memory.kept()));
+        watch.done(1);
         let build = GridBuild::new(device, texels, slab_pairs)?;
         let widest = outcomes.iter().map(|outcome| outcome.trust).fold(0.0, f32::max);
         let io = |(at, level): (usize, &GridLevel)| -> Result<GridBuildIo<'_>, GpuError> {
@@ -230,6 +231,7 @@ impl Surfaces {
         let levels: Vec<_> = grids.levels.iter().enumerate().map(io).collect::<Result<_, _>>()?;
         // Refinement asks for the points, the grid for their balls: those move at rims.
         let point_cells = if refines { build.list_points(&mut work, &levels)? } else { None };
+        watch.done(2);
         clip::clip_balls(device, &mut work, &polynomials, &rims.clips(&cloud.points, &outcomes))?;
         // What goes through the tree reads cells as texels too.
         let cells_fit = grids.cell_count() <= device.limits().max_texel_buffer_elements;
@@ -237,6 +239,7 @@ impl Surfaces {
             true => Some(Tree::build(device, &mut work, &polynomials, count)?),
             false => None,
         };
+        watch.done(3);
         let is_listed = needed.lists || tree.is_none();
         let lists = if is_listed { build.run(&mut work, &levels)? } else { build.no_lists()? };
         if is_listed && grids.skip_cells() {
@@ -246,7 +249,7 @@ impl Surfaces {
         }
         drop(levels);
         let grid_levels = Buffer::from_slice(device, "grids", &grids.levels)?;
-        watch.done(1);
+        watch.done(4);
         Ok(Self {
             polynomials,
             outcomes,
