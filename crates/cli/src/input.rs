@@ -5,7 +5,7 @@ use crate::errors::Failure;
 use crate::memory;
 use crate::progress::Progress;
 use plan::{Plan, SceneImages, Window};
-use points::{PointSet, ReadOptions, Wanted, Watch};
+use points::{Dropped, PointSet, ReadOptions, Wanted, Watch};
 use scene::{Albedo, ImageFile, Object, Scene, Up};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -259,22 +259,35 @@ pub fn read_file(
     progress.stage("reading points", fs::metadata(path).map_or(0, |file| file.len()));
     let set = points::read_with(path, options, &mut |done, _| progress.done(done))?;
     progress.clear();
-    let file = path.display();
-    for note in &set.notes {
-        progress.note(&format!("{file}: {note}"));
-    }
-    for (dropped, why) in [
-        (set.non_finite, "whose position is infinite or not a number"),
-        (set.invalid, "which the file marks as invalid"),
-    ] {
-        if dropped > 0 {
-            let all = set.in_file();
-            progress.note(&format!("warning: {file}: dropped {dropped} of {all} points, {why}"));
-        }
-    }
+    let dropped = Dropped { non_finite: set.non_finite, invalid: set.invalid };
+    note_points(path, &set.notes, dropped, set.len() as u64 + set.filtered_out, progress);
     if !options.filter.keeps_all() {
         let (kept, all) = (set.len(), set.len() as u64 + set.filtered_out);
+        let file = path.display();
         progress.note(&format!("{file}: kept {kept} of {all} points ({})", options.filter));
     }
     Ok(set)
+}
+
+/// Says what a reader assumed, and how many points are of no use besides so many that are.
+pub fn note_points(
+    path: &Path,
+    notes: &[String],
+    dropped: Dropped,
+    usable: u64,
+    progress: &Progress,
+) {
+    let file = path.display();
+    for note in notes {
+        progress.note(&format!("{file}: {note}"));
+    }
+    for (count, why) in [
+        (dropped.non_finite, "whose position is infinite or not a number"),
+        (dropped.invalid, "which the file marks as invalid"),
+    ] {
+        if count > 0 {
+            let all = usable + dropped.count();
+            progress.note(&format!("warning: {file}: dropped {count} of {all} points, {why}"));
+        }
+    }
 }

@@ -11,6 +11,7 @@ use crate::filter::Sieve;
 use crate::names;
 use crate::options::ReadOptions;
 use crate::set::{Attribute, PointSet, Values};
+use crate::stream::Outlet;
 use std::collections::{HashMap, HashSet, TryReserveError};
 use std::path::Path;
 
@@ -33,6 +34,12 @@ pub(crate) struct Collector<'a> {
     /// The filter, in words.
     filter: String,
     set: PointSet,
+    /// Where points go, block by block, if not into the set.
+    outlet: Option<Outlet>,
+    /// Points of a block.
+    block: usize,
+    /// Points that went there.
+    handed_over: u64,
 }
 
 impl<'a> Collector<'a> {
@@ -114,18 +121,31 @@ impl<'a> Collector<'a> {
             }
         };
         let filter = filter.to_string();
-        Ok(Self { path, position, color, normal, attributes: places, sieve, filter, set })
+        let (outlet, block) = (options.outlet.clone(), Outlet::block_of(&set));
+        Ok(Self {
+            path,
+            position,
+            color,
+            normal,
+            attributes: places,
+            sieve,
+            filter,
+            set,
+            outlet,
+            block,
+            handed_over: 0,
+        })
     }
 
     /// Asks for memory for this many points at once, so that too little of it is an error. The
     /// number must be bounded by what the file has bytes for, as that of
     /// [`Source::records`](crate::source::Source::records) is. Nothing is asked for where a filter
-    /// keeps an unknown part.
+    /// keeps an unknown part, or where points are not held.
     pub(crate) fn expect(&mut self, points: u64) -> Result<(), PointsError> {
         if points > u64::from(u32::MAX) {
             return Err(PointsError::TooMany { path: self.path.into(), found: points });
         }
-        if self.sieve.is_some() {
+        if self.sieve.is_some() || self.outlet.is_some() {
             return Ok(());
         }
         let set = &mut self.set;
@@ -175,7 +195,24 @@ impl<'a> Collector<'a> {
         for (attribute, &place) in set.attributes.iter_mut().zip(&self.attributes) {
             attribute.values.push(row[place]);
         }
+        if self.outlet.is_some() && self.set.positions.len() >= self.block {
+            self.hand_over();
+        }
         Ok(())
+    }
+
+    /// Points of the file that were kept.
+    pub(crate) fn kept(&self) -> u64 {
+        self.handed_over + self.set.positions.len() as u64
+    }
+
+    fn hand_over(&mut self) {
+        if let Some(outlet) = &self.outlet
+            && !self.set.is_empty()
+        {
+            self.handed_over += self.set.positions.len() as u64;
+            outlet.take(&mut self.set);
+        }
     }
 
     /// Passes over the next point of the file, which the file itself calls invalid.
@@ -190,7 +227,7 @@ impl<'a> Collector<'a> {
 
     /// Place in the file of the point that comes.
     fn next_index(&mut self) -> Result<u32, PointsError> {
-        let found = self.set.in_file();
+        let found = self.handed_over + self.set.in_file();
         u32::try_from(found)
             .ok()
             .filter(|&index| index < u32::MAX)
@@ -198,9 +235,10 @@ impl<'a> Collector<'a> {
     }
 
     /// The set, which must not be empty. `format` is the file format in words.
-    pub(crate) fn finish(self, format: &str) -> Result<PointSet, PointsError> {
+    pub(crate) fn finish(mut self, format: &str) -> Result<PointSet, PointsError> {
+        self.hand_over();
         let mut set = self.set;
-        if set.positions.is_empty() {
+        if self.handed_over == 0 && set.positions.is_empty() {
             let path = self.path.into();
             return Err(match set.filtered_out {
                 0 if set.in_file() == 0 => PointsError::WithoutPoints { path },

@@ -144,6 +144,12 @@ pub enum PointsError {
         /// How many there are.
         found: u64,
     },
+    /// A file that is read twice was not the same again.
+    #[error("{}: the file changed while it was read; try again when it is complete", Shown(path))]
+    Changed {
+        /// The file as given.
+        path: PathBuf,
+    },
     /// The file has no points.
     #[error(
         "{}: the file holds no points, not even unusable ones; export it again with points",

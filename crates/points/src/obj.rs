@@ -14,6 +14,7 @@ use crate::number::number;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
+use crate::stream::{BLOCK_POINTS, Outlet};
 use std::path::Path;
 
 /// What lines above the vertices begin with.
@@ -50,6 +51,9 @@ pub(crate) fn read(
         match read_as(&mut source, &sample, path, options) {
             // The first megabyte was without the colours that came then.
             Err(Failed::FirstColor(row, _)) if source.rewind().map_err(io_error)? => {
+                if let Some(outlet) = &options.outlet {
+                    outlet.begin_again();
+                }
                 sample = Sample { columns: row.len(), floats: vec![true; row.len()], values: row };
             }
             Err(Failed::FirstColor(_, error) | Failed::Points(error)) => return Err(error),
@@ -102,7 +106,13 @@ fn read_as(
             }
         };
         match vertices.see(line) {
-            Ok(true) => collector.push(&vertices.row)?,
+            Ok(true) => {
+                let kept = collector.kept();
+                collector.push(&vertices.row)?;
+                if collector.kept() == kept {
+                    vertices.normals.leave_out(vertices.found - 1);
+                }
+            }
             Ok(false) => (),
             Err((found, expected)) => {
                 let error = lines.wrong(found, expected);
@@ -114,7 +124,7 @@ fn read_as(
         }
         joined.clear();
     }
-    let Vertices { found: vertices, normals, uncolored, .. } = vertices;
+    let Vertices { found: vertices, normals, uncolored, uncolored_count, .. } = vertices;
     if vertices == 0 {
         let error = PointsError::Missing {
             path: path.into(),
@@ -125,7 +135,7 @@ fn read_as(
         return Err(error.into());
     }
     let mut set = collector.finish("OBJ")?;
-    give_no_color(&mut set, &uncolored, vertices);
+    give_no_color(&mut set, &uncolored, uncolored_count, vertices);
     let normals = normals.give_to(&mut set, vertices);
     set.format += &normals;
     Ok(set)
@@ -140,7 +150,9 @@ struct Vertices {
     normals: Normals,
     wants_normals: bool,
     wants_colors: bool,
-    /// Those without a colour, where others have one.
+    /// How many have no colour, where others have one.
+    uncolored_count: u64,
+    /// Their places, where points are held.
     uncolored: Vec<u32>,
 }
 
@@ -150,9 +162,10 @@ impl Vertices {
             columns: fields.len(),
             row: Vec::new(),
             found: 0,
-            normals: Normals::default(),
+            normals: Normals { outlet: options.outlet.clone(), ..Normals::default() },
             wants_normals: options.wanted.normals(),
             wants_colors: options.wanted.colors(),
+            uncolored_count: 0,
             uncolored: Vec::new(),
         }
     }
@@ -167,9 +180,10 @@ impl Vertices {
                 match self.row.len() {
                     count if count == self.columns => (),
                     count @ (3 | 4) if count + 3 == self.columns => {
-                        self.row.resize(self.columns, 0.0);
-                        if let Some(place) =
-                            u32::try_from(self.found).ok().filter(|_| self.wants_colors)
+                        self.row.resize(self.columns, f64::NAN);
+                        self.uncolored_count += 1;
+                        let holds_colors = self.wants_colors && self.normals.outlet.is_none();
+                        if let Some(place) = u32::try_from(self.found).ok().filter(|_| holds_colors)
                         {
                             self.uncolored.push(place);
                         }
@@ -195,16 +209,15 @@ impl Vertices {
 }
 
 /// Gives vertices without a colour that of objects without any, and says how many there are.
-fn give_no_color(set: &mut PointSet, uncolored: &[u32], vertices: u64) {
-    let Some(colors) = set.colors.as_mut().filter(|_| !uncolored.is_empty()) else { return };
+fn give_no_color(set: &mut PointSet, uncolored: &[u32], count: u64, vertices: u64) {
+    let Some(colors) = set.colors.as_mut().filter(|_| count > 0) else { return };
     for (color, index) in colors.iter_mut().zip(&set.file_index) {
         if uncolored.binary_search(index).is_ok() {
             *color = [NO_COLOR; 3];
         }
     }
     set.notes.push(format!(
-        "{} of {vertices} vertices have no colour and get that of objects without colours, {NO_COLOR}",
-        uncolored.len()
+        "{count} of {vertices} vertices have no colour and get that of objects without colours, {NO_COLOR}"
     ));
 }
 
@@ -272,8 +285,13 @@ fn numbers<'a>(
 #[derive(Default)]
 struct Normals {
     normals: Vec<[f32; 3]>,
+    found: u64,
     /// Whether a face has a corner whose normal is not in its vertex's place.
     belong_to_corners: bool,
+    /// Where normals go, block by block, if they are not held.
+    outlet: Option<Outlet>,
+    /// Places of vertices without use, whose normals do not go there.
+    left_out: Vec<u64>,
 }
 
 impl Normals {
@@ -281,15 +299,35 @@ impl Normals {
         let &[x, y, z] = row else {
             return Err((values(row.len()), "3 values: a normal".to_owned()));
         };
+        self.found += 1;
+        if self.left_out.binary_search(&(self.found - 1)).is_ok() {
+            return Ok(());
+        }
         self.normals.push([x as f32, y as f32, z as f32]);
+        if self.normals.len() >= BLOCK_POINTS {
+            self.hand_over();
+        }
         Ok(())
     }
 
+    /// The vertex of this place is not kept.
+    fn leave_out(&mut self, place: u64) {
+        if self.outlet.is_some() {
+            self.left_out.push(place);
+        }
+    }
+
+    fn hand_over(&mut self) {
+        if let Some(outlet) = &self.outlet {
+            outlet.take_normals(std::mem::take(&mut self.normals));
+        }
+    }
+
     fn check_face<'a>(&mut self, corners: impl Iterator<Item = &'a [u8]>, vertices: u64) {
-        if self.normals.is_empty() || self.belong_to_corners {
+        if self.found == 0 || self.belong_to_corners {
             return;
         }
-        let normals = self.normals.len() as u64;
+        let normals = self.found;
         // From 1, or from the last one backwards.
         let place = |word: Option<&[u8]>, count: u64| {
             let index: i64 = std::str::from_utf8(word?).ok()?.parse().ok()?;
@@ -304,13 +342,14 @@ impl Normals {
     }
 
     /// Gives the points their normals, if they have any, and says what was done.
-    fn give_to(self, set: &mut PointSet, vertices: u64) -> String {
-        match self.normals.len() {
+    fn give_to(mut self, set: &mut PointSet, vertices: u64) -> String {
+        match self.found {
             0 => String::new(),
-            count if self.belong_to_corners || count as u64 != vertices => {
+            count if self.belong_to_corners || count != vertices => {
                 format!("; left out: {count} normals, which are not the vertices'")
             }
             _ => {
+                self.hand_over();
                 let of = |&index: &u32| self.normals[index as usize];
                 set.normals = Some(set.file_index.iter().map(of).collect());
                 ", normals".to_owned()

@@ -3,6 +3,7 @@
 use crate::assign::Columns;
 use crate::filter::Filter;
 use crate::names;
+use crate::stream::Outlet;
 
 /// What of a point file is kept. The default is everything.
 ///
@@ -16,6 +17,9 @@ pub struct ReadOptions {
     pub filter: Filter,
     /// Which column of the file is what.
     pub columns: Columns,
+    /// Where points go instead of being held: what is read then has none. For what goes through a
+    /// file point by point, as [`summarize`](crate::summarize) does.
+    pub outlet: Option<Outlet>,
 }
 
 /// Which numbers of each point are kept beside its position.

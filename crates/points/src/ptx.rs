@@ -56,7 +56,12 @@ pub(crate) fn read(
     match Scans::read(&mut source, path, options, false) {
         // A scan with colours after others without.
         Err(Failed::FirstColor(error)) => match source.rewind().map_err(io_error)? {
-            true => Scans::read(&mut source, path, options, true).map_err(Failed::error),
+            true => {
+                if let Some(outlet) = &options.outlet {
+                    outlet.begin_again();
+                }
+                Scans::read(&mut source, path, options, true).map_err(Failed::error)
+            }
             false => Err(error),
         },
         result => result.map_err(Failed::error),

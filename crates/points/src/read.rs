@@ -82,6 +82,56 @@ pub fn read_bytes(
     read_source(Source::of_file(Cursor::new(bytes), bytes.len() as u64, progress), name, options)
 }
 
+/// What can be read several times.
+pub(crate) enum Input {
+    /// A file of so many bytes.
+    File(u64),
+    /// What came through a pipe.
+    Held(Vec<u8>),
+}
+
+impl Input {
+    /// Reads a pipe whole, if it begins like a point file.
+    pub(crate) fn open(path: &Path) -> Result<Self, PointsError> {
+        let io_error = |source| PointsError::Io { path: path.into(), source };
+        let metadata = path.metadata().map_err(io_error)?;
+        if metadata.is_file() || metadata.is_dir() {
+            return Ok(Self::File(metadata.len()));
+        }
+        let mut pipe = File::open(path).map_err(io_error)?;
+        let mut bytes = Vec::new();
+        pipe.by_ref().take(START as u64).read_to_end(&mut bytes).map_err(io_error)?;
+        if gzip::sniff(&bytes) || format::of(&bytes, path).is_some() {
+            pipe.read_to_end(&mut bytes).map_err(io_error)?;
+        }
+        Ok(Self::Held(bytes))
+    }
+
+    /// In bytes.
+    pub(crate) fn length(&self) -> u64 {
+        match self {
+            Self::File(length) => *length,
+            Self::Held(bytes) => bytes.len() as u64,
+        }
+    }
+
+    /// Reads the points, as [`read_with`] does.
+    pub(crate) fn read(
+        &self,
+        path: &Path,
+        options: &ReadOptions,
+        progress: &mut dyn FnMut(u64, u64),
+    ) -> Result<PointSet, PointsError> {
+        match self {
+            Self::File(_) => read_with(path, options, progress),
+            Self::Held(bytes) => {
+                let source = Source::of_file(Cursor::new(bytes), bytes.len() as u64, progress);
+                read_source(source, path, options)
+            }
+        }
+    }
+}
+
 fn read_source(
     mut source: Source<'_>,
     path: &Path,

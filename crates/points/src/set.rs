@@ -78,6 +78,8 @@ macro_rules! each_type {
     };
 }
 
+pub(crate) use each_type;
+
 /// How a file stores colours: always in sRGB, and by which number at full intensity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ColorEncoding {
@@ -259,7 +261,11 @@ impl ColorEncoding {
     /// The stored value that [`decode`](Self::decode) makes `linear`: exactly, for integers within
     /// their range, and to seven digits for floats.
     pub fn encode(self, linear: f32) -> f64 {
-        let stored = srgb_from_linear(f64::from(linear)) * self.full();
+        self.rounded(srgb_from_linear(f64::from(linear)) * self.full())
+    }
+
+    /// A stored value without the digits that no 32 bits hold.
+    pub(crate) fn rounded(self, stored: f64) -> f64 {
         (stored * self.steps_of_one()).round() / self.steps_of_one()
     }
 }

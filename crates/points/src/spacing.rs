@@ -1,145 +1,91 @@
-//! The median distance of points to the nearest other.
+//! The median distance of positions to the nearest other one, in f64 at any scale.
 //!
-//! A search takes sixty bytes a point beside the positions, so large sets are searched slab by slab
-//! along their longest axis, each with the points that lie near it on both sides. A distance under
-//! the width of that margin is exact; the median of all is, if it is under it.
+//! Points that lie in one place are one position here. Up to 2¹⁷ positions, the median is over all
+//! of them. Of more it is over a sample, but the neighbour of each is looked for among all points: the
+//! tree of [`Distinct`]'s sample bounds how far away it is, and then all points go past
+//! [`Nearest`] once more.
 
-use crate::cloud::{Cloud, ObjectPoints};
-use crate::neighbors::NeighborSearch;
+mod balls;
+mod tree;
 
-/// Points that are searched at once, about.
-const AT_ONCE: usize = 1 << 21;
-/// Equal parts of the longest axis, of which slabs are made.
-const PARTS: usize = 1 << 16;
-/// Width of the margins over that of the slab, and over that of all.
-const MARGIN: f64 = 0.125;
-const LEAST_MARGIN: usize = PARTS / 256;
+use crate::distinct::Distinct;
+use balls::Balls;
+use tree::Tree;
 
-/// The median distance of points to the nearest other one; 0 for duplicates, `None` where there are
-/// fewer than two points, or some lie too far apart to tell.
+/// Positions whose neighbour is looked for, of more than the sample holds. The median of so many is off by
+/// 1 % in the mean where distances are spread as those of random points are.
+const QUERIES: usize = 1 << 13;
+
+/// The median distance of positions to the nearest other one; `None` where there is a single position.
 pub fn median_spacing(positions: &[[f64; 3]]) -> Option<f64> {
-    if positions.len() > 2 * AT_ONCE {
-        by_slabs(positions, AT_ONCE).or_else(|| whole(positions))
-    } else {
-        whole(positions)
+    let mut distinct = Distinct::new();
+    positions.iter().for_each(|position| distinct.see(position));
+    let mut nearest = Nearest::new(distinct);
+    if nearest.needs_all() {
+        positions.iter().for_each(|position| nearest.see(position));
     }
+    nearest.median().map(|(median, _)| median)
 }
 
-fn whole(positions: &[[f64; 3]]) -> Option<f64> {
-    let mut distances = Vec::new();
-    add_distances(positions, positions.len(), &mut distances)?;
-    median(distances)
+/// Distances of positions to the nearest other one.
+pub(crate) struct Nearest {
+    balls: Balls,
+    is_exact: bool,
 }
 
-/// Adds the distances of the first `count` points to the nearest of the others.
-fn add_distances(positions: &[[f64; 3]], count: usize, distances: &mut Vec<f64>) -> Option<()> {
-    let file_index: Vec<u32> = (0..positions.len() as u32).collect();
-    let object = ObjectPoints::new(positions, &file_index);
-    let cloud = Cloud::new(&[object]).ok()?;
-    let lists = NeighborSearch::new(&cloud.points, 0).nearest(0..cloud.points.len(), 1);
-    let of_the_first = cloud.points.iter().zip(&lists).filter(|(p, _)| (p.index as usize) < count);
-    distances.extend(of_the_first.filter_map(|(point, &neighbor)| {
-        let other = cloud.points.get(neighbor as usize)?;
-        let [a, b] = [point.index, other.index].map(|index| positions[index as usize]);
-        Some([0, 1, 2].map(|axis| (b[axis] - a[axis]).powi(2)).iter().sum::<f64>().sqrt())
-    }));
-    Some(())
-}
-
-fn median(mut distances: Vec<f64>) -> Option<f64> {
-    let half = distances.len() / 2;
-    if distances.is_empty() {
-        return None;
-    }
-    let odd = distances.len() % 2 == 1;
-    let (below, &mut median, _) = distances.select_nth_unstable_by(half, f64::total_cmp);
-    if odd {
-        return Some(median);
-    }
-    let lower = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    Some(0.5 * (lower + median))
-}
-
-/// `None` where the median is not under the narrowest margin.
-fn by_slabs(positions: &[[f64; 3]], at_once: usize) -> Option<f64> {
-    let [low, high] = crate::bounds_of([positions])?;
-    let extent = |axis: &usize| high[*axis] - low[*axis];
-    let axis = (0..3).max_by(|a, b| extent(a).total_cmp(&extent(b)))?;
-    let scale = PARTS as f64 / extent(&axis);
-    if !(scale.is_finite() && scale > 0.0) {
-        return None;
-    }
-    let part = |p: &[f64; 3]| (((p[axis] - low[axis]) * scale) as usize).min(PARTS - 1);
-    let mut counts = vec![0u32; PARTS];
-    for position in positions {
-        counts[part(position)] += 1;
-    }
-    let mut distances = Vec::new();
-    distances.try_reserve_exact(positions.len()).ok()?;
-    let mut narrowest = f64::INFINITY;
-    let mut first = 0;
-    while first < PARTS {
-        let (mut end, mut count) = (first, 0);
-        while end < PARTS && (end == first || count + counts[end] as usize <= at_once) {
-            count += counts[end] as usize;
-            end += 1;
+impl Nearest {
+    /// `distinct` has seen all points.
+    pub(crate) fn new(distinct: Distinct) -> Self {
+        let is_exact = distinct.sample_is_whole();
+        let mut queries = distinct.sample();
+        let tree = Tree::new(queries.clone());
+        if is_exact {
+            // In the order of the tree, so that neighbours find its nodes in the cache.
+            queries.copy_from_slice(tree.positions());
+        } else {
+            queries.truncate(QUERIES);
         }
-        // Parts on both sides.
-        let margin = (((end - first) as f64 * MARGIN) as usize).max(LEAST_MARGIN);
-        let near = first.saturating_sub(margin)..(end + margin).min(PARTS);
-        let mut slab: Vec<[f64; 3]> = Vec::with_capacity(count);
-        let (mut beside, slab_parts) = (Vec::new(), first..end);
-        for position in positions {
-            let part = part(position);
-            if slab_parts.contains(&part) {
-                slab.push(*position);
-            } else if near.contains(&part) {
-                beside.push(*position);
-            }
-        }
-        if count > 0 {
-            slab.append(&mut beside);
-            let before = distances.len();
-            add_distances(&slab, count, &mut distances)?;
-            // A point alone with its margin has no distance yet: any is farther than that.
-            distances.resize(before + count, f64::INFINITY);
-            narrowest = narrowest.min(margin as f64 / scale);
-        }
-        first = end;
+        let distances = tree.distances(&queries);
+        Self { balls: Balls::new(queries, distances), is_exact }
     }
-    median(distances).filter(|&median| median < narrowest)
+
+    /// Whether all points have to be [seen](Self::see) once more.
+    pub(crate) fn needs_all(&self) -> bool {
+        !self.is_exact
+    }
+
+    /// Takes the position of a point, whichever it is.
+    pub(crate) fn see(&mut self, position: &[f64; 3]) {
+        self.balls.see(position);
+    }
+
+    /// The median, and how many positions it is over if that is not all of them. `None` if there is a single
+    /// position.
+    pub(crate) fn median(self) -> Option<(f64, Option<u64>)> {
+        let mut distances = self.balls.into_distances();
+        // A single position has no other. No difference of two coordinates is farther than f64 reaches.
+        if distances.len() < 2 {
+            return None;
+        }
+        let of = (!self.is_exact).then_some(distances.len() as u64);
+        let half = distances.len() / 2;
+        let (below, &mut upper, _) = distances.select_nth_unstable_by(half, f64::total_cmp);
+        let lower = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let odd = distances.len() % 2 == 1;
+        let median = if odd { upper } else { lower + 0.5 * (upper - lower) };
+        Some((median.min(f64::MAX), of))
+    }
+}
+
+/// The distance of two positions. Neither squares that overflow nor those that vanish spoil it.
+fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    let [x, y, z] = [0, 1, 2].map(|axis| b[axis] - a[axis]);
+    let square = x * x + y * y + z * z;
+    if (1e-280..1e280).contains(&square) {
+        return square.sqrt();
+    }
+    x.hypot(y).hypot(z)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn cloud(count: u32) -> Vec<[f64; 3]> {
-        let random =
-            |i: u32| f64::from(i.wrapping_mul(2_654_435_761) ^ i >> 3) / f64::from(u32::MAX);
-        (0..count)
-            .map(|i| [4.9e6 + 100.0 * random(3 * i), random(3 * i + 1), random(3 * i + 2)])
-            .collect()
-    }
-
-    #[test]
-    fn slabs_have_the_median_of_the_whole() {
-        let points = cloud(20_000);
-        let expected = whole(&points).unwrap();
-        for at_once in [1000, 3000, 19_999] {
-            let found = by_slabs(&points, at_once).unwrap();
-            // Each slab rounds about a centre of its own.
-            assert!((found / expected - 1.0).abs() < 1e-5, "{found}, not {expected}");
-        }
-    }
-
-    #[test]
-    fn what_slabs_cannot_tell_is_left_to_the_whole() {
-        // Two points in every thousandth part: each other's nearest, across what is no margin.
-        let sparse: Vec<[f64; 3]> = (0..60).map(|i| [f64::from(i * i), 0.0, 0.0]).collect();
-        assert_eq!(by_slabs(&sparse, 1), None);
-        assert_eq!(by_slabs(&[[1.0; 3]; 50], 10), None);
-        assert_eq!(whole(&[[1.0; 3]; 50]), Some(0.0));
-        assert_eq!((whole(&[[1.0; 3]]), whole(&[])), (None, None));
-    }
-}
+mod tests;

@@ -1,6 +1,12 @@
 //! What `pointillist info` tells about a point file.
 
-use crate::set::PointSet;
+mod columns;
+mod histogram;
+mod passes;
+
+pub use histogram::{Histogram, Range};
+pub use passes::summarize;
+
 use serde_json::{Map, Value, json};
 use std::fmt;
 
@@ -22,8 +28,15 @@ pub struct PointSummary {
     /// Name and range of everything else a point has: normals as `nx`, `ny`, `nz`, colours as
     /// `red`, `green`, `blue` in the file's units, then the attributes in the order of the file.
     pub attributes: Vec<(String, Range, Histogram)>,
-    /// Median distance to the nearest other point; 0 for duplicates, `None` for a single point.
+    /// Points at the place of an earlier one.
+    pub coincident: u64,
+    /// Whether these were counted. In files of over four million positions they are estimated.
+    pub coincident_counted: bool,
+    /// Median distance of positions to the nearest other one, coincident points being one position; `None`
+    /// where there is a single position.
     pub spacing: Option<f64>,
+    /// How many positions it is the median of, if not of all.
+    pub spacing_sample: Option<u64>,
     /// What the reader assumed or left out ([`PointSet::notes`]).
     pub notes: Vec<String>,
 }
@@ -44,44 +57,7 @@ impl Dropped {
     }
 }
 
-/// Smallest and largest of some values, of those that are numbers; `None` if none is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range(pub Option<(f64, f64)>);
-
 impl PointSummary {
-    /// Summarises a point set. `spacing` is the median distance to the nearest other point, which
-    /// takes a search that is not done here.
-    pub fn new(set: &PointSet, spacing: Option<f64>) -> Self {
-        let (min, max) = set.bounds().unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
-        let mut attributes = Vec::new();
-        if let Some(normals) = &set.normals {
-            for (axis, name) in ["nx", "ny", "nz"].into_iter().enumerate() {
-                let values = normals.iter().map(|normal| f64::from(normal[axis]));
-                attributes.push(described(name, values));
-            }
-        }
-        if let (Some(colors), Some(encoding)) = (&set.colors, set.color_encoding) {
-            for (channel, name) in ["red", "green", "blue"].into_iter().enumerate() {
-                let stored = colors.iter().map(|color| encoding.encode(color[channel]));
-                attributes.push(described(name, stored));
-            }
-        }
-        for attribute in &set.attributes {
-            attributes.push(described(&attribute.name, attribute.values.iter()));
-        }
-        Self {
-            format: set.format.clone(),
-            points: set.len() as u64,
-            dropped: Dropped { non_finite: set.non_finite, invalid: set.invalid },
-            filtered_out: set.filtered_out,
-            min,
-            max,
-            attributes,
-            spacing,
-            notes: set.notes.clone(),
-        }
-    }
-
     /// The middle of the box, which a render of these points alone subtracts from them before it goes
     /// on in 32 bits.
     pub fn origin(&self) -> [f64; 3] {
@@ -114,74 +90,12 @@ impl PointSummary {
             "bounds": { "min": self.min, "max": self.max },
             "origin": self.origin(),
             "attributes": attributes,
+            "coincident": self.coincident,
+            "coincident_counted": self.coincident_counted,
             "spacing": self.spacing,
+            "spacing_sample": self.spacing_sample,
             "notes": self.notes,
         })
-    }
-}
-
-/// How often values lie where, between the lowest finite one and the highest.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Histogram {
-    /// Lower end of the first part; 0 where no value is finite.
-    pub low: f64,
-    /// Upper end of the last part.
-    pub high: f64,
-    /// Values in each of the even parts; an end between two counts for the upper one.
-    pub counts: [u64; BINS],
-}
-
-/// Parts of a histogram.
-const BINS: usize = 16;
-/// Characters of its longest bar.
-const BAR: u64 = 40;
-
-/// What is told about some values.
-fn described(name: &str, values: impl Iterator<Item = f64> + Clone) -> (String, Range, Histogram) {
-    (name.to_owned(), Range::of(values.clone()), Histogram::of(values))
-}
-
-impl Histogram {
-    /// The histogram of some values. Those that are not finite are passed over.
-    pub fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
-        let finite = values.filter(|value| value.is_finite());
-        let (low, high) = Range::of(finite.clone()).0.unwrap_or_default();
-        let mut counts = [0; BINS];
-        // Halves, so that no difference of two numbers overflows.
-        let span = 0.5 * high - 0.5 * low;
-        for value in finite {
-            let part = if span > 0.0 { (0.5 * value - 0.5 * low) / span } else { 0.0 };
-            // The highest value is in the last part.
-            counts[((part * BINS as f64) as usize).min(BINS - 1)] += 1;
-        }
-        Self { low, high, counts }
-    }
-}
-
-impl fmt::Display for Histogram {
-    /// One line a part: its lower end, how many, and a bar.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let most = self.counts.iter().copied().max().unwrap_or(0).max(1);
-        let width = most.to_string().len();
-        for (bin, &count) in self.counts.iter().enumerate() {
-            let part = bin as f64 / BINS as f64;
-            let from = self.low * (1.0 - part) + self.high * part;
-            // What is there at all shows.
-            let bar = "#".repeat((count * BAR).div_ceil(most) as usize);
-            let line = format!("{from:>12.5e}  {count:width$}  {bar}");
-            write!(f, "\n      {}", line.trim_end())?;
-        }
-        Ok(())
-    }
-}
-
-impl Range {
-    /// The range of some values. NaN is passed over.
-    pub fn of(values: impl Iterator<Item = f64>) -> Self {
-        Self(values.filter(|value| !value.is_nan()).fold(None, |range, value| match range {
-            None => Some((value, value)),
-            Some((min, max)) => Some((value.min(min), value.max(max))),
-        }))
     }
 }
 
@@ -204,12 +118,26 @@ impl fmt::Display for PointSummary {
         if invalid > 0 {
             writeln!(f, "dropped  {invalid} (marked invalid in the file)")?;
         }
+        if self.coincident > 0 {
+            let about = if self.coincident_counted { "" } else { "about " };
+            writeln!(
+                f,
+                "coincide {about}{} (points at the place of an earlier one)",
+                self.coincident
+            )?;
+        }
         writeln!(f, "min      {}", corner(self.min))?;
         writeln!(f, "max      {}", corner(self.max))?;
         writeln!(f, "origin   {} (subtracted by a render)", corner(self.origin()))?;
-        match self.spacing {
-            Some(spacing) => write!(f, "spacing  {spacing} (median to the nearest other point)")?,
-            None => write!(f, "spacing  none (a single point)")?,
+        match (self.spacing, self.spacing_sample) {
+            (None, _) => write!(f, "spacing  none (a single position)")?,
+            (Some(spacing), None) => {
+                write!(f, "spacing  {spacing} (median to the nearest other position)")?
+            }
+            (Some(spacing), Some(sample)) => write!(
+                f,
+                "spacing  {spacing} (median to the nearest other position, of {sample} positions)"
+            )?,
         }
         if self.attributes.is_empty() {
             return Ok(());
@@ -234,7 +162,8 @@ impl fmt::Display for PointSummary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::set::{Attribute, ColorEncoding, Values};
+    use crate::set::{Attribute, ColorEncoding, PointSet, Values};
+    use histogram::BINS;
 
     fn set() -> PointSet {
         let encoding = ColorEncoding::Srgb8;
@@ -259,7 +188,7 @@ mod tests {
 
     #[test]
     fn json_has_what_was_promised() {
-        let json = PointSummary::new(&set(), Some(0.25)).to_json();
+        let json = PointSummary::of(&set()).to_json();
         let expected = json!({
             "format": "PLY 1.0, ascii",
             "points": 2,
@@ -267,7 +196,10 @@ mod tests {
             "dropped": { "count": 1, "reasons": { "non-finite position": 1 } },
             "bounds": { "min": [0.5, -2.0, 0.1], "max": [1.0, 4.0, 636_001.76] },
             "origin": [0.75, 1.0, 318_000.93],
-            "spacing": 0.25,
+            "coincident": 0,
+            "coincident_counted": true,
+            "spacing": (0.25f64 + 36.0 + 636_001.66 * 636_001.66).sqrt(),
+            "spacing_sample": null,
             "notes": [],
         });
         let mut others = json.clone();
@@ -300,31 +232,16 @@ mod tests {
         assert_eq!(*none, json!({ "low": 0.0, "high": 0.0, "counts": vec![0; BINS] }));
     }
 
-    /// 0 to 159 in sixteen parts of 9.9375: each has its tens but for what the ends round.
-    #[test]
-    fn a_histogram_counts_every_finite_value_once() {
-        let values = (0..160).map(f64::from).chain([f64::NAN, f64::INFINITY]);
-        let histogram = Histogram::of(values);
-        assert_eq!((histogram.low, histogram.high), (0.0, 159.0));
-        assert_eq!(histogram.counts, [10; BINS]);
-        let text = histogram.to_string();
-        assert_eq!(text.lines().count(), BINS + 1);
-        assert!(text.contains("   9.93750e0  10  ####"), "{text}");
-        let far = Histogram::of([-f64::MAX, f64::MAX].into_iter());
-        assert_eq!((far.counts[0], far.counts[BINS - 1]), (1, 1));
-    }
-
     #[test]
     fn nothing_dropped_has_no_reasons() {
         let set = PointSet { non_finite: 0, ..set() };
-        let json = PointSummary::new(&set, None).to_json();
+        let json = PointSummary::of(&set).to_json();
         assert_eq!(json["dropped"], json!({ "count": 0, "reasons": {} }));
-        assert_eq!(json["spacing"], Value::Null);
     }
 
     #[test]
     fn text_names_every_attribute() {
-        let text = PointSummary::new(&set(), Some(0.25)).to_string();
+        let text = PointSummary::of(&set()).to_string();
         for line in
             ["points   2", "min      0.5 -2 0.1", "  red    3 .. 17", "  none   not a number"]
         {

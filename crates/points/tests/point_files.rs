@@ -265,7 +265,7 @@ fn ranges_are_those_of_the_list() {
         ("volumes/combustor.ply", "speed", 0.0, 1528.9, 6e-2),
         ("volumes/ironprot_100k.ply", "density", 0.0, 255.0, 0.0),
     ] {
-        let summary = PointSummary::new(&read(&data.join(file)).unwrap(), None).to_json();
+        let summary = PointSummary::of(&read(&data.join(file)).unwrap()).to_json();
         let range = &summary["attributes"][attribute];
         let found = ["min", "max"].map(|end| range[end].as_f64().unwrap());
         assert!((found[0] - min).abs() <= tolerance, "{file}: {found:?}");

@@ -7,7 +7,6 @@ use crate::errors::Failure;
 use crate::input::{self, Input, SceneValues};
 use crate::progress::Progress;
 use plan::Plan;
-use points::neighbors::median_spacing;
 use points::{PointSet, PointSummary, ReadOptions, Watch};
 use scene::{Light, Projection, Scene};
 use serde_json::{Value, json};
@@ -22,8 +21,9 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     } else if info_picture::is_picture(&args.file) {
         info_picture::of(&args.file, args.json)?
     } else {
-        let set = input::read_file(&args.file, &ReadOptions::default(), &progress)?;
-        let summary = summarize(&set, &progress);
+        let summary = points::summarize(&args.file, &ReadOptions::default(), &progress)?;
+        progress.clear();
+        input::note_points(&args.file, &summary.notes, summary.dropped, summary.points, &progress);
         if args.json { pretty(&summary.to_json()) } else { format!("{summary}\n") }
     };
     drop(progress);
@@ -53,9 +53,9 @@ fn of_scene(args: &InfoArgs, progress: &Progress) -> Result<String, Failure> {
 
 fn summarize(set: &PointSet, progress: &Progress) -> PointSummary {
     progress.stage("measuring the spacing", 1);
-    let spacing = median_spacing(&set.positions);
+    let summary = PointSummary::of(set);
     progress.clear();
-    PointSummary::new(set, spacing)
+    summary
 }
 
 fn scene_json(scene: &Scene, plan: &Plan, summaries: &[Arc<PointSummary>]) -> Value {

@@ -13,8 +13,15 @@ fn info_of_a_point_file_is_one_json_object() {
     assert_eq!(info["points"], 4);
     assert_eq!(info["dropped"]["count"], 1);
     assert_eq!(info["bounds"], json!({ "min": [0.0, 0.0, 0.0], "max": [4.0, 2.0, 0.0] }));
-    // The nearest others are 1, 0, 0 and the root of 13 away.
-    assert_eq!(info["spacing"], 0.5);
+    // Of three positions, the nearest others are 1, 1 and the root of 13 away.
+    assert_eq!((&info["spacing"], &info["spacing_sample"]), (&json!(1.0), &Value::Null));
+    assert_eq!((&info["coincident"], &info["coincident_counted"]), (&json!(1), &json!(true)));
+    assert_eq!(
+        ran.stderr,
+        "warning: a.ply: dropped 1 of 5 points, whose position is infinite or not a number\n"
+    );
+    let text = run_in(folder.path(), &["info", "a.ply"]).succeeds().stdout;
+    assert!(text.contains("\ncoincide 1 (points at the place of an earlier one)\n"), "{text}");
     assert!(info["format"].as_str().expect("a name").contains("PLY"), "{info}");
     assert!(info["attributes"].is_object(), "{info}");
 
