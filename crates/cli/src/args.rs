@@ -69,6 +69,10 @@ pub struct RenderArgs {
     /// files, which depth cameras write, else y]
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
     pub up: Option<UpAxis>,
+    /// What the columns of a point file are, from the first on, with commas between: x,y,z,_,red,green,blue;
+    /// _ passes a column over
+    #[arg(long, value_name = "LIST", value_parser = points::Columns::in_order)]
+    pub columns: Option<points::Columns>,
     #[command(flatten)]
     pub device: DeviceArgs,
     /// Write times and counts of this render as JSON
@@ -144,6 +148,10 @@ pub struct InfoArgs {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+    /// What the columns of a point file are, from the first on, with commas between: x,y,z,_,red,green,blue;
+    /// _ passes a column over
+    #[arg(long, value_name = "LIST", value_parser = points::Columns::in_order)]
+    pub columns: Option<points::Columns>,
     #[command(flatten)]
     pub progress: ProgressArgs,
 }

@@ -5,8 +5,9 @@ use crate::errors::Failure;
 use crate::memory;
 use crate::progress::Progress;
 use plan::{Plan, SceneImages, Window};
-use points::{Dropped, PointSet, ReadOptions, Wanted, Watch};
+use points::{Column, Columns, Dropped, PointSet, ReadOptions, Wanted, Watch};
 use scene::{Albedo, ImageFile, Object, Scene, Up};
+use serde_json::json;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::fs;
@@ -63,6 +64,23 @@ impl SceneValues {
         }
     }
 
+    /// `--columns`, which is for point files.
+    pub fn add_columns(&mut self, path: &Path, columns: &Columns) -> Result<(), Failure> {
+        if is_scene_file(path) {
+            return Err(columns_of_scene(path));
+        }
+        let column = |of: &Column| match of {
+            Column::Name(name) => json!(name).to_string(),
+            Column::Number(number) => number.to_string(),
+        };
+        let named =
+            columns.named.iter().map(|(name, of)| format!("{} = {}", json!(name), column(of)));
+        let left_out = format!("_ = {:?}", columns.left_out);
+        let all: Vec<String> = named.chain([left_out]).collect();
+        self.add("objects.0.columns", &format!("{{ {} }}", all.join(", ")), "--columns");
+        Ok(())
+    }
+
     /// One option.
     pub fn add(&mut self, path: &str, value: &str, option: &str) {
         self.entries.push((format!("{path}={value}"), Some(option.to_owned())));
@@ -83,6 +101,14 @@ impl SceneValues {
         }
         failure
     }
+}
+
+/// Why `--columns` and this file do not go together.
+pub fn columns_of_scene(path: &Path) -> Failure {
+    Failure::usage(format!(
+        "{}: --columns is for point files, but this is a scene; write [objects.columns] in it",
+        path.display()
+    ))
 }
 
 /// Whether a path is a scene file's rather than a point file's.
@@ -181,12 +207,12 @@ impl Input {
         let all = |object: &Object| ReadOptions {
             wanted: Wanted::All,
             filter: plan::point_filter(&object.filter),
-            ..ReadOptions::default()
+            columns: plan::point_columns(&object.columns),
         };
         self.read_as(all, progress)
     }
 
-    /// Reads each file once for all objects with the same filter.
+    /// Reads each file once for all objects with the same filter and columns.
     fn read_as(
         &self,
         options: impl Fn(&Object) -> ReadOptions,
@@ -196,7 +222,10 @@ impl Input {
         let mut job_of = Vec::new();
         for object in &self.scene.objects {
             let (file, options) = (same_file(&object.points), options(object));
-            let known = jobs.iter().position(|job| job.0 == file && job.2.filter == options.filter);
+            let known = jobs.iter().position(|job| {
+                let known = (&job.2.filter, &job.2.columns);
+                job.0 == file && known == (&options.filter, &options.columns)
+            });
             if let Some(job) = known {
                 jobs[job].2.wanted = jobs[job].2.wanted.or(&options.wanted);
             } else {

@@ -27,7 +27,7 @@ pub use diagnostic::Diagnostic;
 pub use discs::{MAX_DISC_PAIRS, screen_tiles};
 pub use error::PlanError;
 pub use images::{Cleaned, SceneImages};
-pub use needs::{filter as point_filter, read_options};
+pub use needs::{columns as point_columns, filter as point_filter, read_options};
 pub use picture::{Picture, Rays};
 pub use volumes::Volumes;
 

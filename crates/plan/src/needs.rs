@@ -1,10 +1,10 @@
 //! What of its point file an object makes use of, so that nothing else is held.
 
 use crate::colors::UV;
-use points::{Filter, ReadOptions, Wanted};
+use points::{Column, Columns, Filter, ReadOptions, Wanted};
 use scene::{
-    Albedo, Boundary, MaterialKind, Object, PerParticle, PointFilter, TextureAxis, VolumeKernel,
-    VolumeMode,
+    Albedo, Boundary, MaterialKind, Object, PerParticle, PointColumn, PointColumns, PointFilter,
+    TextureAxis, VolumeKernel, VolumeMode,
 };
 
 /// How an object's file is to be read for a render.
@@ -42,7 +42,7 @@ pub fn read_options(object: &Object) -> ReadOptions {
         normals: matches!(object.material.kind, MaterialKind::Glass { .. }),
         attributes: names.into_iter().map(str::to_owned).collect(),
     };
-    ReadOptions { wanted, filter: filter(&object.filter), ..ReadOptions::default() }
+    ReadOptions { wanted, filter: filter(&object.filter), columns: columns(&object.columns) }
 }
 
 /// A scene's filter as readers take it.
@@ -54,6 +54,19 @@ pub fn filter(filter: &PointFilter) -> Filter {
         ranges: filter.ranges.clone(),
         classes: filter.classes.clone(),
         voxel: filter.voxel,
+    }
+}
+
+/// What a scene says of columns, as readers take it.
+#[must_use]
+pub fn columns(columns: &PointColumns) -> Columns {
+    let column = |column: &PointColumn| match column {
+        PointColumn::Name(name) => Column::Name(name.clone()),
+        PointColumn::Number(number) => Column::Number(*number),
+    };
+    Columns {
+        named: columns.named.iter().map(|(name, of)| (name.clone(), column(of))).collect(),
+        left_out: columns.left_out.clone(),
     }
 }
 
@@ -90,6 +103,13 @@ mod tests {
              density = \"d\", boundary = \"skin\", color_map = \"gray\", extinction = 1 }",
         );
         assert_eq!(particles, ["rho", "skin", "h", "m", "d"]);
+    }
+
+    #[test]
+    fn columns_are_handed_on() {
+        assert!(options("").columns.is_empty());
+        let columns = options("columns = { x = \"E\", red = 4, _ = [2] }").columns;
+        assert_eq!(columns.to_string(), "x = 'E', red = column 4, _ = column 2");
     }
 
     #[test]

@@ -5,7 +5,7 @@
 
 use crate::document::{Node, Origin, Value, cut};
 use crate::error::Problem;
-use crate::keys::{Absent, DIRECTION, Key, Kind, Numbers, SCENE, Table};
+use crate::keys::{Absent, DIRECTION, Key, Kind, LEFT_OUT, MOST_COLUMNS, Numbers, SCENE, Table};
 use crate::not_built::not_built;
 use crate::read::Reader;
 
@@ -240,6 +240,16 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
             }
             Ok(())
         }
+        (Kind::Columns, Value::Table(entries)) => {
+            for entry in entries {
+                column(&entry.name, &entry.node).map_err(|message| Wrong {
+                    within: format!(".{}", shown_name(&entry.name)),
+                    origin: entry.node.origin,
+                    message,
+                })?;
+            }
+            Ok(())
+        }
         (Kind::Prefixed(before, _), Value::Text(found)) => {
             match found.strip_prefix(before).map(str::trim) {
                 Some(name) if !name.is_empty() => Ok(()),
@@ -296,6 +306,23 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
         }
         _ => Err(by_example()),
     }
+}
+
+/// A column, or the list of those that are passed over.
+fn column(name: &str, node: &Node) -> Result<(), String> {
+    let is_number = |node: &Node| match node.value {
+        Value::Integer(number) => (1..=i128::from(MOST_COLUMNS)).contains(&number),
+        _ => false,
+    };
+    let expected = match (name, &node.value) {
+        (LEFT_OUT, Value::List(items)) if items.iter().all(is_number) => return Ok(()),
+        (LEFT_OUT, _) => "a list of columns' numbers from 1; write e.g. [4, 7]",
+        ("", _) => "a name before it; name what the column holds",
+        (_, Value::Text(text)) if !text.trim().is_empty() => return Ok(()),
+        _ if is_number(node) => return Ok(()),
+        _ => "a column's name or its number from 1; write e.g. \"E\" or 4",
+    };
+    Err(format!("found {}, expected {expected}", node.shown))
 }
 
 /// One value of a list.

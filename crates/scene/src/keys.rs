@@ -96,6 +96,8 @@ pub(crate) enum Kind {
     },
     /// A table of any names, each with two numbers, the second no less than the first.
     Ranges(Numbers),
+    /// A table of any names, each with a column's name or number; `_` with a list of numbers.
+    Columns,
 }
 
 /// A closed range and its unit, which may be empty.
@@ -114,6 +116,11 @@ pub(crate) const SHORT: f64 = 1e-12;
 pub(crate) const fn numbers(min: f64, max: f64, unit: &'static str) -> Numbers {
     Numbers { min, max, unit }
 }
+
+/// The key of `[objects.columns]` that lists columns which are passed over.
+pub(crate) const LEFT_OUT: &str = "_";
+/// Greatest number of a column.
+pub(crate) const MOST_COLUMNS: u32 = 1_000_000;
 
 const POSITION: Kind = Kind::Vector(numbers(-LARGE, LARGE, "scene units"));
 const FILE_POSITION: Kind = Kind::Vector(numbers(-LARGE, LARGE, "units of the file"));
@@ -407,6 +414,18 @@ pub(crate) static OBJECTS: Table = Table {
         key("material", Kind::Table(&MATERIAL), Absent::Table, MATERIAL.doc),
         key("volume", Kind::Table(&VOLUME), Words("a pure surface", "{}"), VOLUME.doc),
         key("filter", Kind::Table(&FILTER), Absent::Table, FILTER.doc),
+        key(
+            "columns",
+            Kind::Columns,
+            Words(
+                "what the file calls them, or is taken to mean",
+                "{ x = \"E\", y = \"N\", z = 3 }",
+            ),
+            "Which column of the file is what: `x`, `y`, `z`, `red`, `green`, `blue`, `nx`, `ny`, `nz`, \
+             `intensity`, `classification`, or any other name for an attribute, each with the column's \
+             name in the file or its number from 1. `_` lists the numbers of columns that are passed \
+             over. See docs/point-files.md, Choosing columns.",
+        ),
     ],
 };
 
@@ -828,6 +847,9 @@ impl Kind {
             Kind::List { of, max } => format!("a list of 1 to {max}, each {}", of.expected()),
             Kind::Ranges(n) => {
                 format!("a table of names, each with two numbers {n}, the second no less")
+            }
+            Kind::Columns => {
+                "a table of names, each with a column's name or its number from 1".into()
             }
         }
     }

@@ -353,6 +353,7 @@ impl Object {
             points,
             points_as_written: written,
             filter: PointFilter::read(&table.table("filter", &keys::FILTER)),
+            columns: table.written_columns("columns"),
             transform: Transform::read(&table.table("transform", &keys::TRANSFORM)),
             surface: Surface::read(&table.table("surface", &keys::SURFACE)),
             material: Material::read(&table.table("material", &keys::MATERIAL), folder),

@@ -6,6 +6,7 @@
 
 use crate::document::{Node, Origin, Value, parse_value};
 use crate::keys::{Absent, Table};
+use crate::{PointColumn, PointColumns};
 
 /// A table of a document that passed the checks, or one that was left out.
 pub(crate) struct Reader<'a> {
@@ -106,6 +107,32 @@ impl<'a> Reader<'a> {
                 None => self.unlike("a range", &entry.name, &entry.node.value),
             })
             .collect()
+    }
+
+    /// Columns by names or numbers, those that are written.
+    pub(crate) fn written_columns(&self, name: &str) -> PointColumns {
+        let mut columns = PointColumns::default();
+        let Some(node) = self.written(name) else { return columns };
+        let Value::Table(entries) = &node.value else {
+            self.unlike("a table of columns", name, &node.value)
+        };
+        let number = |node: &Node| match node.value {
+            Value::Integer(number) => u32::try_from(number).ok(),
+            _ => None,
+        };
+        for entry in entries {
+            let column = match (&entry.node.value, number(&entry.node)) {
+                (Value::List(items), _) => {
+                    columns.left_out.extend(items.iter().filter_map(number));
+                    continue;
+                }
+                (Value::Text(text), _) => PointColumn::Name(text.clone()),
+                (_, Some(number)) => PointColumn::Number(number),
+                (other, None) => self.unlike("a column", &entry.name, other),
+            };
+            columns.named.push((entry.name.clone(), column));
+        }
+        columns
     }
 
     /// Counts, where they are written.

@@ -198,6 +198,8 @@ pub struct Object {
     pub points_as_written: String,
     /// Which points of the file are taken.
     pub filter: PointFilter,
+    /// Which column of the file is what, over what the file says.
+    pub columns: PointColumns,
     /// From the file's coordinates to the world's.
     pub transform: Transform,
     /// How the surface is fitted.
@@ -206,6 +208,24 @@ pub struct Object {
     pub material: Material,
     /// A volume made of the points; `None`: the object is a pure surface.
     pub volume: Option<Volume>,
+}
+
+/// Which column of a point file is what.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct PointColumns {
+    /// `x`, `y`, `z`, `red`, …, or any name of an attribute, and the column.
+    pub named: Vec<(String, PointColumn)>,
+    /// Columns that are passed over, counted from 1.
+    pub left_out: Vec<u32>,
+}
+
+/// A column of a point file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum PointColumn {
+    /// The one that the file calls so.
+    Name(String),
+    /// The one in this place, counted from 1.
+    Number(u32),
 }
 
 /// Which points of a file are taken. Conditions apply in the order of the fields. Coordinates and

@@ -1,7 +1,7 @@
 //! The table of keys as JSON Schema.
 
 use crate::document::{Origin, Value, parse_value};
-use crate::keys::{Absent, DIRECTION, Key, Kind, Numbers, SCENE, Table};
+use crate::keys::{Absent, DIRECTION, Key, Kind, LEFT_OUT, MOST_COLUMNS, Numbers, SCENE, Table};
 use crate::not_built::not_built;
 use crate::suite_keys::SUITE;
 use serde_json::{Map, Value as Json, json};
@@ -98,6 +98,16 @@ fn kind(of: &Kind, path: &str) -> Map<String, Json> {
                 "type": "array", "items": number(range), "minItems": 2, "maxItems": 2,
             },
         })),
+        Kind::Columns => {
+            let number = json!({ "type": "integer", "minimum": 1, "maximum": MOST_COLUMNS });
+            as_map(json!({
+                "type": "object",
+                "properties": { LEFT_OUT: { "type": "array", "items": number } },
+                "additionalProperties": {
+                    "anyOf": [{ "type": "string", "minLength": 1 }, number],
+                },
+            }))
+        }
         Kind::Bool => as_map(json!({ "type": "boolean" })),
         Kind::Integer { min, max, .. } => {
             as_map(json!({ "type": "integer", "minimum": min, "maximum": max }))

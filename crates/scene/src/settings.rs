@@ -2,8 +2,9 @@
 
 use crate::{
     Albedo, Boundary, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Normals, Object,
-    PerParticle, PointFilter, Polynomial, Projection, Refine, RenderSettings, Scene, Surface,
-    TextureAxis, Transfer, Volume, VolumeKernel, VolumeMode, VolumeShading,
+    PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, Projection, Refine,
+    RenderSettings, Scene, Surface, TextureAxis, Transfer, Volume, VolumeKernel, VolumeMode,
+    VolumeShading,
 };
 use std::fmt::{self, Write};
 
@@ -104,6 +105,7 @@ fn write_object(out: &mut String, object: &Object) -> fmt::Result {
     writeln!(out, "name = {}", quoted(&object.name))?;
     writeln!(out, "points = {}", quoted(&object.points_as_written))?;
     write_filter(out, &object.filter)?;
+    write_columns(out, &object.columns)?;
     writeln!(out, "\n[objects.transform]")?;
     writeln!(out, "scale = {:?}", object.transform.scale)?;
     writeln!(out, "rotate = {:?}", object.transform.rotate)?;
@@ -114,6 +116,20 @@ fn write_object(out: &mut String, object: &Object) -> fmt::Result {
         Some(volume) => write_volume(out, volume),
         None => Ok(()),
     }
+}
+
+fn write_columns(out: &mut String, columns: &PointColumns) -> fmt::Result {
+    if *columns == PointColumns::default() {
+        return Ok(());
+    }
+    writeln!(out, "\n[objects.columns]")?;
+    for (name, column) in &columns.named {
+        match column {
+            PointColumn::Name(column) => writeln!(out, "{} = {}", quoted(name), quoted(column))?,
+            PointColumn::Number(number) => writeln!(out, "{} = {number}", quoted(name))?,
+        }
+    }
+    if columns.left_out.is_empty() { Ok(()) } else { writeln!(out, "_ = {:?}", columns.left_out) }
 }
 
 fn write_filter(out: &mut String, filter: &PointFilter) -> fmt::Result {

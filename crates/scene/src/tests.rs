@@ -65,6 +65,11 @@ box = { min = [-1, 0, 4.9e6], max = [1, 0.5, 4.9e6] }
 range = { intensity = [100, 2000.5], "odd name" = [2, 2] }
 classification = [2, 6]
 voxel = 0.05
+[objects.columns]
+x = "E [m]"
+y = 2
+"odd name" = 7
+_ = [4, 5]
 [objects.transform]
 scale = 2.5
 rotate = [10.0, 90.0, -5.5]

@@ -16,12 +16,17 @@ use std::sync::Arc;
 /// Prints what is there.
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let progress = Progress::new(&args.progress);
+    if args.columns.is_some() && input::is_scene_file(&args.file) {
+        return Err(input::columns_of_scene(&args.file));
+    }
     let text = if input::is_scene_file(&args.file) {
         of_scene(args, &progress)?
     } else if info_picture::is_picture(&args.file) {
         info_picture::of(&args.file, args.json)?
     } else {
-        let summary = points::summarize(&args.file, &ReadOptions::default(), &progress)?;
+        let columns = args.columns.clone().unwrap_or_default();
+        let options = ReadOptions { columns, ..ReadOptions::default() };
+        let summary = points::summarize(&args.file, &options, &progress)?;
         progress.clear();
         input::note_points(&args.file, &summary.notes, summary.dropped, summary.points, &progress);
         if args.json { pretty(&summary.to_json()) } else { format!("{summary}\n") }

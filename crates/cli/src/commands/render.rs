@@ -30,6 +30,9 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if let Some(samples) = args.samples {
         values.add("image.samples", &samples.to_string(), &format!("--samples {samples}"));
     }
+    if let Some(columns) = &args.columns {
+        values.add_columns(&args.scene, columns)?;
+    }
     let input = Input::load(&args.scene, &values, args.up)?;
     let diagnostics = diagnostics(args, &formats);
     memory::require_picture(input.window(args.crop)?, &formats, diagnostics.len())?;

@@ -51,6 +51,14 @@ fn every_built_key_is_read() {
         name: "the \"knot\" \\ ∂".into(),
         points: PathBuf::from("scenes/points/knot.ply"),
         points_as_written: "points/knot.ply".into(),
+        columns: PointColumns {
+            named: vec![
+                ("x".to_owned(), PointColumn::Name("E [m]".to_owned())),
+                ("y".to_owned(), PointColumn::Number(2)),
+                ("odd name".to_owned(), PointColumn::Number(7)),
+            ],
+            left_out: vec![4, 5],
+        },
         filter: PointFilter {
             every: 3,
             bounds: Some([[-1.0, 0.0, 4.9e6], [1.0, 0.5, 4.9e6]]),
@@ -276,6 +284,30 @@ transfer = [                   # stops, ascending in value
         scene.objects[0].volume.as_ref().map(|volume| stop_count(volume.transfer.as_ref())),
         Some(2)
     );
+}
+
+#[test]
+fn columns_are_checked() {
+    for (set, expected) in [
+        (
+            "columns=3",
+            "objects[0].columns: found 3, expected a table of names, each with a column's",
+        ),
+        (
+            "columns.x=0",
+            "objects[0].columns.x: found 0, expected a column's name or its number from 1",
+        ),
+        ("columns.x=1.5", "objects[0].columns.x: found 1.5, expected a column's name"),
+        ("columns.x=[1]", "objects[0].columns.x: found a list of 1, expected a column's name"),
+        ("columns.x=\"\"", "objects[0].columns.x: found the string \"\", expected a column's name"),
+        ("columns._=4", "objects[0].columns._: found 4, expected a list of columns' numbers"),
+        ("columns={ \"\" = 4 }", "found 4, expected a name before it"),
+    ] {
+        let error = error_with(FULL, &[&format!("objects.0.{set}")]);
+        assert!(error.contains(expected), "{error}\nlacks {expected}");
+    }
+    let set = ["objects.1.columns.x=E", "objects.1.columns.red=5"];
+    assert_eq!(read_with(FULL, &set).unwrap().objects[1].columns.named.len(), 2);
 }
 
 #[test]
