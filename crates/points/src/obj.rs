@@ -50,13 +50,15 @@ pub(crate) fn read(
     loop {
         match read_as(&mut source, &sample, path, options) {
             // The first megabyte was without the colours that came then.
-            Err(Failed::FirstColor(row, _)) if source.rewind().map_err(io_error)? => {
+            Err(Failed::FirstColor(first)) if source.rewind().map_err(io_error)? => {
                 if let Some(outlet) = &options.outlet {
                     outlet.begin_again();
                 }
+                let row = first.0;
                 sample = Sample { columns: row.len(), floats: vec![true; row.len()], values: row };
             }
-            Err(Failed::FirstColor(_, error) | Failed::Points(error)) => return Err(error),
+            Err(Failed::FirstColor(first)) => return Err(first.1),
+            Err(Failed::Points(error)) => return Err(error),
             Ok(set) => return Ok(set),
         }
     }
@@ -65,7 +67,7 @@ pub(crate) fn read(
 /// Why vertices cannot be read as those of the sample.
 enum Failed {
     /// This one is the first with a colour.
-    FirstColor(Vec<f64>, PointsError),
+    FirstColor(Box<(Vec<f64>, PointsError)>),
     Points(PointsError),
 }
 
@@ -116,10 +118,12 @@ fn read_as(
             Ok(false) => (),
             Err((found, expected)) => {
                 let error = lines.wrong(found, expected);
-                return Err(match vertices.row.len() == vertices.columns + 3 {
-                    true => Failed::FirstColor(vertices.row, error),
-                    false => error.into(),
-                });
+                return Err(
+                    match matches!((vertices.columns, vertices.row.len()), (3, 6) | (4, 7)) {
+                        true => Failed::FirstColor(Box::new((vertices.row, error))),
+                        false => error.into(),
+                    },
+                );
             }
         }
         joined.clear();
@@ -414,6 +418,11 @@ mod tests {
         assert_eq!(set.colors.as_ref().unwrap()[1], [0.8; 3]);
         assert_eq!(set.attribute("w"), Some(&Values::F64(vec![1.0, 0.5])));
         assert_eq!(read("v 1 2 3 1 1 0\n").notes, [""; 0]);
+        // Nine values are too many, wherever they come.
+        let nine = "v 1 2 3 4 5 6 7 8 9\n";
+        for text in [format!("v 1 2 3 1 1 0\n{nine}"), format!("v 1 2 3\n{nine}")] {
+            assert!(try_read(text).unwrap_err().to_string().contains("more than 8 values"));
+        }
         // The first colour may come after the part that is looked at.
         let plain = "v 1 2 3\n".repeat(SAMPLE / 8 + 10);
         let set = read(plain + "v 4 5 6 0.25 0 1\n");
