@@ -4,9 +4,9 @@ use crate::args::{Overrides, UpAxis};
 use crate::errors::Failure;
 use crate::memory;
 use crate::progress::Progress;
-use plan::{Plan, SceneImages, Window};
+use plan::{MapProjection, Plan, SceneImages, Window};
 use points::{Column, Columns, Dropped, PointSet, ReadOptions, Wanted, Watch};
-use scene::{Albedo, ImageFile, Object, Scene, Up};
+use scene::{Albedo, ImageFile, Object, Scene, Units, Up};
 use serde_json::json;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -126,12 +126,18 @@ impl Input {
             points::Upwards::Z => Up::Z,
             points::Upwards::MinusY => Up::MinusY,
         };
-        let turned = up.map_or_else(own_up, Up::from);
-        let loaded = if is_scene_file(path) {
+        let mut turned = up.map_or_else(own_up, Up::from);
+        let mut loaded = if is_scene_file(path) {
             Scene::load(path, &set)
         } else {
             Scene::for_point_file(path, turned, &set)
         };
+        let in_degrees = |scene: &Scene| scene.objects.iter().any(|o| o.units == Units::Degrees);
+        if !is_scene_file(path) && up.is_none() && loaded.as_ref().is_ok_and(in_degrees) {
+            // Projected, they are east, north and up.
+            turned = Up::Z;
+            loaded = Scene::for_point_file(path, turned, &set);
+        }
         let mut scene = loaded.map_err(|error| values.name_options(error.into()))?;
         if let (true, Some(_), Some(_)) = (is_scene_file(path), up, scene.camera) {
             return Err(Failure::usage(format!(
@@ -208,6 +214,7 @@ impl Input {
             wanted: Wanted::All,
             filter: plan::point_filter(&object.filter),
             columns: plan::point_columns(&object.columns),
+            ..ReadOptions::default()
         };
         self.read_as(all, progress)
     }
@@ -250,9 +257,16 @@ impl Input {
     ) -> Result<Plan, Failure> {
         memory::require_points(sets.iter().map(|set| set.len() as u64).sum())?;
         let images = self.read_images(progress)?;
+        self.note_units(sets, progress);
         let plan = Plan::watched(&self.scene, sets, &images, crop, self.up, progress);
         progress.clear();
         let plan = plan?;
+        if let Some(projection) = &plan.projection {
+            note_projection(projection, progress);
+        }
+        for warning in &plan.coarse {
+            progress.note(&format!("warning: {warning}"));
+        }
         for apart in &plan.apart {
             let file = self.scene.objects[apart.object].points.display();
             progress.note(&format!("warning: {file}: {apart}"));
@@ -264,6 +278,54 @@ impl Input {
             ));
         }
         Ok(plan)
+    }
+}
+
+impl Input {
+    /// Says which points are taken for degrees, and which only look like it.
+    fn note_units(&self, sets: &[Arc<PointSet>], progress: &Progress) {
+        for (index, (object, set)) in self.scene.objects.iter().zip(sets).enumerate() {
+            let known = sets[..index].iter().any(|earlier| Arc::ptr_eq(earlier, set));
+            if known || object.units != Units::Auto {
+                continue;
+            }
+            let file = object.points.display();
+            if let points::Units::Degrees(reason) = &set.units {
+                progress.note(&format!(
+                    "{file}: x and y are taken as longitude and latitude in degrees, since {reason}, and \
+                     projected to metres; --set objects.{index}.units=scene leaves them as they are"
+                ));
+            }
+            if let Some(note) = looks_like_degrees(&set.units, index) {
+                progress.note(&format!("warning: {file}: {note}"));
+            }
+        }
+    }
+}
+
+/// The doubt about numbers that look like degrees, of an object of this index.
+pub fn looks_like_degrees(units: &points::Units, index: usize) -> Option<String> {
+    (*units == points::Units::LikeDegrees).then(|| {
+        format!(
+            "x and y look like longitude and latitude in degrees beside heights in metres, but nothing in the \
+             file says so, and they are left as they are; --set objects.{index}.units=degrees projects them to \
+             metres"
+        )
+    })
+}
+
+fn note_projection(projection: &MapProjection, progress: &Progress) {
+    let [longitude, latitude] = projection.center;
+    progress.note(&format!(
+        "degrees become metres east (x) and north (y) of longitude {longitude}, latitude {latitude} \
+         ({projection}); camera, lights and transforms are in these"
+    ));
+    if projection.stretch > 0.01 {
+        progress.note(&format!(
+            "warning: the points in degrees reach so far that lengths are up to {:.0} % too long away from the \
+             centre; choose a smaller part by objects.filter for true proportions",
+            100.0 * projection.stretch
+        ));
     }
 }
 

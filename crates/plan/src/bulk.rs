@@ -1,6 +1,6 @@
 //! What a scene is framed, centred and measured by: its points without strays ([`points::Strays`]).
 
-use crate::PlanError;
+use crate::{PlanError, degrees};
 use points::{Cloud, CloudError, ObjectPoints, PointSet, Strays, origin_of, rough_origin};
 use rayon::prelude::*;
 use scene::{Object, Scene};
@@ -70,7 +70,12 @@ pub(crate) struct Bulk {
 }
 
 impl Bulk {
-    pub(crate) fn of(scene: &Scene, sets: &[Arc<PointSet>]) -> Result<Self, PlanError> {
+    /// `files` are the sets as read, in the coordinates of their files.
+    pub(crate) fn of(
+        scene: &Scene,
+        sets: &[Arc<PointSet>],
+        files: &[Arc<PointSet>],
+    ) -> Result<Self, PlanError> {
         let placed = |(object, set): (&Object, &Arc<PointSet>)| Arc::new(placed(object, set));
         let world: Vec<World> = scene.objects.iter().zip(sets).map(placed).collect();
         let all: Vec<&[[f64; 3]]> = world.iter().map(|world| &world[..]).collect();
@@ -87,7 +92,7 @@ impl Bulk {
             orders: Vec::new(),
         };
         for (index, strays) in found.into_iter().enumerate() {
-            let given = (&sets[index], &world[index]);
+            let given = (&sets[index], &world[index], &files[index]);
             bulk.add(given, strays, scene.objects[index].volume.is_some());
         }
         if origin_of(bounds) != origin {
@@ -96,7 +101,12 @@ impl Bulk {
         Ok(bulk)
     }
 
-    fn add(&mut self, (set, world): (&Arc<PointSet>, &World), strays: Strays, has_volume: bool) {
+    fn add(
+        &mut self,
+        (set, world, file): (&Arc<PointSet>, &World, &Arc<PointSet>),
+        strays: Strays,
+        has_volume: bool,
+    ) {
         let all = (Arc::clone(set), Arc::clone(world));
         if strays.places.is_empty() {
             self.sets.push(Arc::clone(set));
@@ -114,7 +124,7 @@ impl Bulk {
             of: world.len() as u64,
             farthest: strays.farthest,
             size: sides.into_iter().fold(0.0, f64::max),
-            filter: strays.filter(self.sets.len(), &set.positions),
+            filter: strays.filter(self.sets.len(), &degrees::in_file(set, file)),
         });
         let without = |places: &[u32]| {
             let mut keep = vec![true; world.len()];

@@ -131,6 +131,26 @@ pub enum PlanError {
     /// More texels than 32 bits can count.
     #[error("the images of the scene, with {0}, are over 4294967295 numbers; make them smaller")]
     TooManyTexels(String),
+    /// Degrees of no place on Earth.
+    #[error(
+        "object '{name}': point {index} of {file} has longitude {x} and latitude {y}, but degrees go to 360 and \
+         90 ({count} such points); {advice}",
+        x = .place[0], y = .place[1]
+    )]
+    NoPlace {
+        /// The object.
+        name: String,
+        /// Its point file.
+        file: String,
+        /// Place in the file of the first such point, from 0.
+        index: u32,
+        /// Its x and y.
+        place: [f64; 2],
+        /// How many there are.
+        count: usize,
+        /// What to do.
+        advice: String,
+    },
     /// A crop that is not inside the picture.
     #[error(
         "--crop {x},{y},{width},{height} does not lie inside the picture of {image_width}x{image_height} \

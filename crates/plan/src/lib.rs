@@ -8,6 +8,7 @@
 mod bulk;
 mod camera;
 mod colors;
+mod degrees;
 mod diagnostic;
 mod discs;
 mod error;
@@ -19,10 +20,12 @@ mod needs;
 mod neighborhoods;
 mod objects;
 mod picture;
+mod precision;
 mod volumes;
 
 pub use bulk::Apart;
 pub use camera::View;
+pub use degrees::{MapProjection, in_degrees};
 pub use diagnostic::Diagnostic;
 pub use discs::{MAX_DISC_PAIRS, screen_tiles};
 pub use error::PlanError;
@@ -123,6 +126,10 @@ pub struct Plan {
     pub window: Window,
     /// Names of the objects, for messages.
     pub names: Vec<String>,
+    /// How the objects whose points are in degrees became metres; `None` where there is none.
+    pub projection: Option<MapProjection>,
+    /// Where steps of 32 bits are coarse beside the distances of points, one sentence an object and cause.
+    pub coarse: Vec<String>,
     /// How many isolated points each object lost (`drop_isolated`).
     pub isolated: Vec<u64>,
     /// The strays of each object that has any.
@@ -170,16 +177,19 @@ impl Plan {
         watch: &dyn Watch,
     ) -> Result<Self, PlanError> {
         assert_eq!(scene.objects.len(), sets.len(), "one point set an object");
-        let (sets, isolated) = drop_isolated(scene, sets, watch)?;
+        let files = sets;
+        let (metric, projection) = degrees::projected(scene, files, watch)?;
+        let (sets, isolated) = drop_isolated(scene, &metric, watch)?;
         let image_size = scene.image.size;
         let window = checked_crop(crop, image_size)?;
         watch.stage("sorting points", sets.iter().map(|set| set.len() as u64).sum());
-        let bulk = Bulk::of(scene, &sets)?;
+        let bulk = Bulk::of(scene, &sets, files)?;
         let surface_sets: Vec<Arc<PointSet>> = (scene.objects.iter().zip(&bulk.sets))
             .map(|(object, set)| volumes::surface_points(object, set, watch))
             .collect::<Result<_, _>>()?;
         watch.stage("sorting points", surface_sets.iter().map(|set| set.len() as u64).sum());
         let cloud = bulk.cloud(scene, &surface_sets)?;
+        let coarse = precision::warnings(scene, files, &metric, cloud.origin);
         let volumes = volumes::plan_volumes(scene, &bulk, &cloud, watch)?;
         let fits = scene
             .objects
@@ -250,6 +260,8 @@ impl Plan {
             names: scene.objects.iter().map(|object| object.name.clone()).collect(),
             isolated,
             apart: bulk.apart,
+            projection,
+            coarse,
             diagnostics: Vec::new(),
             transparent: scene.image.transparent,
             channel_alpha,
@@ -257,7 +269,9 @@ impl Plan {
                 world_to_camera: view.world_to_camera,
                 world_to_ndc: view.world_to_ndc,
                 origin: cloud.origin,
-                settings: vec![("scene".to_owned(), framed.settings_toml())],
+                settings: std::iter::once(("scene".to_owned(), framed.settings_toml()))
+                    .chain(projection.map(|p| ("projection".to_owned(), p.to_string())))
+                    .collect(),
             },
             cloud,
         })

@@ -42,7 +42,12 @@ pub fn read_options(object: &Object) -> ReadOptions {
         normals: matches!(object.material.kind, MaterialKind::Glass { .. }),
         attributes: names.into_iter().map(str::to_owned).collect(),
     };
-    ReadOptions { wanted, filter: filter(&object.filter), columns: columns(&object.columns) }
+    ReadOptions {
+        wanted,
+        filter: filter(&object.filter),
+        columns: columns(&object.columns),
+        ..ReadOptions::default()
+    }
 }
 
 /// A scene's filter as readers take it.

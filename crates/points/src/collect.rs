@@ -6,12 +6,14 @@
 
 use crate::color::{self, Color, Verdict};
 use crate::error::PointsError;
-use crate::field::Field;
+use crate::field::{Field, Type};
 use crate::filter::Sieve;
+use crate::meaning;
 use crate::names;
 use crate::options::ReadOptions;
 use crate::set::{Attribute, PointSet, Values};
 use crate::stream::Outlet;
+use crate::units::{self, Spread, Units};
 use std::collections::{HashMap, HashSet, TryReserveError};
 use std::path::Path;
 
@@ -40,6 +42,10 @@ pub(crate) struct Collector<'a> {
     block: usize,
     /// Points that went there.
     handed_over: u64,
+    /// Points spread over the file.
+    sample: Spread,
+    /// How the file shows that x and y are degrees, if it does.
+    degrees: Option<String>,
 }
 
 impl<'a> Collector<'a> {
@@ -64,7 +70,14 @@ impl<'a> Collector<'a> {
         path: &'a Path,
         options: &ReadOptions,
     ) -> Result<Self, PointsError> {
-        let position = triple(fields, POSITION).map_err(|axis| PointsError::Missing {
+        // Longitude and latitude are a position by their names; other names are left to readers.
+        let in_degrees = |axis| {
+            let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
+            let places = meaning::positions_among(&names).ok_or(axis)?;
+            units::named(names[places[0]], names[places[1]]).map(|_| places).ok_or(axis)
+        };
+        let position = triple(fields, POSITION).or_else(in_degrees);
+        let position = position.map_err(|axis| PointsError::Missing {
             path: path.into(),
             missing: format!("number '{axis}'"),
             place: format!("among the fields of a point ({})", listed(fields)),
@@ -79,7 +92,8 @@ impl<'a> Collector<'a> {
                 || normal.is_some_and(|normal| normal.contains(place))
         };
 
-        let mut set = PointSet::default();
+        let single_positions = position.iter().all(|&place| fields[place].kind == Type::F32);
+        let mut set = PointSet { single_positions, ..PointSet::default() };
         let mut places = Vec::new();
         let names = distinct_names(fields);
         let others: Vec<usize> = (0..fields.len())
@@ -122,6 +136,8 @@ impl<'a> Collector<'a> {
         };
         let filter = filter.to_string();
         let (outlet, block) = (options.outlet.clone(), Outlet::block_of(&set));
+        let [x, y] = [position[0], position[1]].map(|place| fields[place].original_name());
+        let degrees = units::named(x, y);
         Ok(Self {
             path,
             position,
@@ -134,7 +150,14 @@ impl<'a> Collector<'a> {
             outlet,
             block,
             handed_over: 0,
+            sample: Spread::default(),
+            degrees,
         })
+    }
+
+    /// The file says that x and y are longitude and latitude in degrees, in the way that the text says.
+    pub(crate) fn is_in_degrees(&mut self, how: String) {
+        self.degrees = Some(how);
     }
 
     /// Asks for memory for this many points at once, so that too little of it is an error. The
@@ -184,6 +207,7 @@ impl<'a> Collector<'a> {
             set.filtered_out += 1;
             return Ok(());
         }
+        self.sample.see(position);
         set.positions.push(position);
         set.file_index.push(index);
         if let (Some(colors), Some(color)) = (&mut set.colors, &self.color) {
@@ -261,6 +285,9 @@ impl<'a> Collector<'a> {
             set.notes.extend(note);
         }
         set.format = format.to_owned();
+        let (units, doubt) = Units::of(&self.sample.positions, self.degrees);
+        set.units = units;
+        set.notes.extend(doubt);
         Ok(set)
     }
 }

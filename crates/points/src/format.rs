@@ -4,7 +4,7 @@ use crate::error::PointsError;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
-use crate::{e57, esri, las, npy, obj, off, pcd, ply, ptx, text, vtk};
+use crate::{e57, esri, las, npy, obj, off, pcd, ply, ptx, text, units, vtk};
 use std::path::Path;
 
 /// A format that points are read from.
@@ -108,6 +108,8 @@ impl Format {
         match self.name {
             "LAS" | "E57" | "PTX" | "ESRI grid" => Upwards::Z,
             "PCD" if pcd::is_organised(start) => Upwards::MinusY,
+            // East, north and up, once projected.
+            "PLY" | "PCD" | "NPY" | "text" if units::header_in_degrees(start) => Upwards::Z,
             _ => Upwards::Y,
         }
     }

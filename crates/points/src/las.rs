@@ -8,6 +8,7 @@
 //! integers times their scale plus their offset, in f64. Points marked as withheld come too, like
 //! all others: `flags` says so, and a filter may leave them out.
 
+mod crs;
 mod extra;
 mod laz;
 mod record;
@@ -32,6 +33,10 @@ const EVLR_HEADER: u64 = 60;
 const MAX_RECORDS: u32 = 1 << 12;
 /// Bytes that are read at once, about.
 const BLOCK: usize = 1 << 20;
+
+/// Where the header has flags, and the one that says that well-known text counts.
+const GLOBAL_ENCODING: u64 = 6;
+const WKT_COUNTS: u8 = 1 << 4;
 
 const EXPORT: &str = "the file is damaged: copy or export it again";
 /// Of what others read.
@@ -88,6 +93,14 @@ pub(crate) fn read(
     let layout = record::Layout::new(&header, extra);
 
     let mut collector = Collector::new(layout.fields(), path, options)?;
+    let mut notes = Vec::new();
+    let prefers_text = file.bytes_at(GLOBAL_ENCODING, 2).map_err(io_error)?[0] & WKT_COUNTS != 0;
+    if let Some(system) = crs::of(&mut file, &records, prefers_text).map_err(io_error)? {
+        notes.extend(system.doubts());
+        if system.degrees {
+            collector.is_in_degrees(system.in_words());
+        }
+    }
     let left = file.length().saturating_sub(header.data);
     if header.compressed {
         // Hardly any point takes less than a byte.
@@ -120,7 +133,10 @@ pub(crate) fn read(
         "LAS"
     };
     let [major, minor] = header.version;
-    collector.finish(&format!("{kind} {major}.{minor}, point format {}", header.format))
+    let format = format!("{kind} {major}.{minor}, point format {}", header.format);
+    let mut set = collector.finish(&format)?;
+    set.notes.extend(notes);
+    Ok(set)
 }
 
 /// What may go wrong while points are read.

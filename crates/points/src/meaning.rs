@@ -5,6 +5,7 @@
 
 use crate::field::{Field, Type};
 use crate::guess::numbered;
+use crate::units;
 
 /// Names of positions, the likelier before: the first that a table has is taken, axis by axis.
 const POSITION: [&[&str]; 3] = [
@@ -220,7 +221,19 @@ fn positions_of(plain: &[String]) -> Option<[usize; 3]> {
     };
     let [x, y, z] = POSITION.map(likeliest);
     let plainest = || Some([x?, y?, z?]);
-    plainest().or_else(|| POSITION_OF_THREE.into_iter().find_map(all)).or_else(|| with_more(plain))
+    plainest()
+        .or_else(|| POSITION_OF_THREE.into_iter().find_map(all))
+        .or_else(|| with_more(plain))
+        .or_else(|| Some([longitude(plain)?, latitude(plain)?, z?]))
+}
+
+/// Names with longitude or latitude in them, such as `decimalLongitude`.
+fn longitude(plain: &[String]) -> Option<usize> {
+    plain.iter().position(|name| units::is_longitude(name))
+}
+
+fn latitude(plain: &[String]) -> Option<usize> {
+    plain.iter().position(|name| units::is_latitude(name))
 }
 
 /// Positions whose names have the same before and after what stands for the axis.

@@ -50,7 +50,7 @@ pub fn read_with(
 }
 
 /// Which way is up in a file, as a rule for its format: z in surveys (LAS, LAZ, E57), -y in organised
-/// PCD files, which depth cameras write, else y. So it is too where the file cannot be read.
+/// PCD files, which depth cameras write, z where columns are named longitude and latitude, else y. So it is too where the file cannot be read.
 pub fn usual_up(path: &Path) -> Upwards {
     let mut start = Vec::new();
     // A pipe that is opened and left is closed to its writer.

@@ -2,6 +2,7 @@
 
 use crate::field::Type;
 use crate::names;
+use crate::units::Units;
 use std::collections::TryReserveError;
 
 /// Positions and attributes of one point file, in the file's own coordinates.
@@ -37,6 +38,10 @@ pub struct PointSet {
     /// What the reader assumed where the file leaves it open, and what it left out, one sentence each,
     /// without the file's name: `taken for x y z red green blue, since …; --columns says otherwise`.
     pub notes: Vec<String>,
+    /// What x and y are. Positions are the file's numbers either way.
+    pub units: Units,
+    /// Whether the file stores positions in floats of 32 bits.
+    pub single_positions: bool,
 }
 
 /// A number that every point has.
@@ -151,6 +156,8 @@ impl PointSet {
             filtered_out: self.filtered_out,
             format: self.format.clone(),
             notes: self.notes.clone(),
+            units: self.units.clone(),
+            single_positions: self.single_positions,
         }
     }
 

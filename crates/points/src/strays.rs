@@ -117,10 +117,19 @@ impl Strays {
         // Outwards to three digits of the size, so that the numbers are short.
         let [low, high] = bulk_of(in_file, &self.places);
         let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-        let step = if size > 0.0 { 10f64.powf(size.log10().floor() - 2.0) } else { f64::EPSILON };
-        let digits = (-step.log10().round()).clamp(0.0, 300.0) as usize;
+        // Of degrees beside metres, each axis has a size of its own.
+        let size_of = |axis: usize| match high[axis] - low[axis] {
+            own if own > 0.0 && own < 1e-2 * size => own,
+            _ => size,
+        };
         let corner = |corner: [f64; 3], round: fn(f64) -> f64| {
-            let rounded = corner.map(|x| format!("{:.digits$}", round(x / step) * step));
+            let rounded = [0, 1, 2].map(|axis| {
+                let size = size_of(axis);
+                let step =
+                    if size > 0.0 { 10f64.powf(size.log10().floor() - 2.0) } else { f64::EPSILON };
+                let digits = (-step.log10().round()).clamp(0.0, 300.0) as usize;
+                format!("{:.digits$}", round(corner[axis] / step) * step)
+            });
             rounded.join(", ")
         };
         Some(format!(

@@ -7,6 +7,7 @@ mod passes;
 pub use histogram::{Histogram, Range};
 pub use passes::summarize;
 
+use crate::units::Units;
 use serde_json::{Map, Value, json};
 use std::fmt;
 
@@ -39,6 +40,8 @@ pub struct PointSummary {
     pub spacing_sample: Option<u64>,
     /// What the reader assumed or left out ([`PointSet::notes`]).
     pub notes: Vec<String>,
+    /// What x and y are.
+    pub units: Units,
 }
 
 /// How many points were dropped, and why.
@@ -95,6 +98,10 @@ impl PointSummary {
             "spacing": self.spacing,
             "spacing_sample": self.spacing_sample,
             "notes": self.notes,
+            "units": match self.units {
+                Units::Degrees(_) => "degrees",
+                Units::Lengths | Units::LikeDegrees => "lengths",
+            },
         })
     }
 }
@@ -138,6 +145,9 @@ impl fmt::Display for PointSummary {
                 f,
                 "spacing  {spacing} (median to the nearest other position, of {sample} positions)"
             )?,
+        }
+        if let Units::Degrees(reason) = &self.units {
+            write!(f, "\nunits    longitude and latitude in degrees, since {reason}")?;
         }
         if self.attributes.is_empty() {
             return Ok(());
@@ -201,6 +211,7 @@ mod tests {
             "spacing": (0.25f64 + 36.0 + 636_001.66 * 636_001.66).sqrt(),
             "spacing_sample": null,
             "notes": [],
+            "units": "lengths",
         });
         let mut others = json.clone();
         let attributes = others.as_object_mut().unwrap().remove("attributes").unwrap();

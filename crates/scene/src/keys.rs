@@ -409,6 +409,15 @@ pub(crate) static OBJECTS: Table = Table {
             Required("\"points/knot.ply\""),
             "The point file, relative to the scene file's folder.",
         ),
+        key(
+            "units",
+            Kind::Choice(&["auto", "degrees", "scene"]),
+            Value("\"auto\""),
+            "What x and y of the file are. `\"degrees\"`: longitude and latitude, which are projected to \
+             metres east and north of a centre that all such objects of the scene share, before the \
+             transform; z stays. `\"scene\"`: lengths, which stay as they are. `\"auto\"`: degrees where \
+             the file says so, by the names of its columns or by its coordinate reference system.",
+        ),
         key("transform", Kind::Table(&TRANSFORM), Absent::Table, TRANSFORM.doc),
         key("surface", Kind::Table(&SURFACE), Absent::Table, SURFACE.doc),
         key("material", Kind::Table(&MATERIAL), Absent::Table, MATERIAL.doc),
@@ -480,7 +489,7 @@ pub(crate) static FILTER_BOX: Table = Table {
 
 pub(crate) static TRANSFORM: Table = Table {
     header: "[objects.transform]",
-    doc: "From the file's coordinates to the world's: scale, then rotate, then translate.",
+    doc: "From the file's coordinates (of degrees, from metres) to the world's: scale, then rotate, then translate.",
     whole: None,
     keys: &[
         key("scale", Kind::Number(numbers(1e-12, 1e12, "")), Value("1.0"), "One positive factor."),

@@ -35,8 +35,8 @@ pub use scene::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
     ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, PointColumn,
     PointColumns, PointFilter, Polynomial, Primary, Projection, RayLoop, Refine, RenderSettings,
-    Scene, Secondary, Stop, Surface, TextureAxis, Transfer, Up, Volume, VolumeKernel, VolumeMode,
-    VolumeShading,
+    Scene, Secondary, Stop, Surface, TextureAxis, Transfer, Units, Up, Volume, VolumeKernel,
+    VolumeMode, VolumeShading,
 };
 pub use schema::{json_schema, suite_json_schema};
 pub use suite::{Shape, Suite, SuiteRow};

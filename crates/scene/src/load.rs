@@ -9,7 +9,7 @@ use crate::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
     ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, PointFilter,
     Polynomial, Primary, Projection, RayLoop, Refine, RenderSettings, Scene, SceneError, Secondary,
-    Stop, Surface, TextureAxis, Transfer, Transform, Up, Volume, VolumeKernel, VolumeMode,
+    Stop, Surface, TextureAxis, Transfer, Transform, Units, Up, Volume, VolumeKernel, VolumeMode,
     VolumeShading,
 };
 use std::env;
@@ -354,6 +354,11 @@ impl Object {
             points_as_written: written,
             filter: PointFilter::read(&table.table("filter", &keys::FILTER)),
             columns: table.written_columns("columns"),
+            units: match table.text("units").as_str() {
+                "degrees" => Units::Degrees,
+                "scene" => Units::Scene,
+                _ => Units::Auto,
+            },
             transform: Transform::read(&table.table("transform", &keys::TRANSFORM)),
             surface: Surface::read(&table.table("surface", &keys::SURFACE)),
             material: Material::read(&table.table("material", &keys::MATERIAL), folder),

@@ -200,7 +200,9 @@ pub struct Object {
     pub filter: PointFilter,
     /// Which column of the file is what, over what the file says.
     pub columns: PointColumns,
-    /// From the file's coordinates to the world's.
+    /// What x and y of the file are.
+    pub units: Units,
+    /// From the file's coordinates, of degrees from metres, to the world's.
     pub transform: Transform,
     /// How the surface is fitted.
     pub surface: Surface,
@@ -226,6 +228,18 @@ pub enum PointColumn {
     Name(String),
     /// The one in this place, counted from 1.
     Number(u32),
+}
+
+/// What x and y of a point file are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Units {
+    /// What the file says; lengths where it says nothing.
+    #[default]
+    Auto,
+    /// Longitude and latitude in degrees.
+    Degrees,
+    /// Lengths, like z.
+    Scene,
 }
 
 /// Which points of a file are taken. Conditions apply in the order of the fields. Coordinates and

@@ -3,7 +3,7 @@
 use crate::{
     Albedo, Boundary, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Normals, Object,
     PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, Projection, Refine,
-    RenderSettings, Scene, Surface, TextureAxis, Transfer, Volume, VolumeKernel, VolumeMode,
+    RenderSettings, Scene, Surface, TextureAxis, Transfer, Units, Volume, VolumeKernel, VolumeMode,
     VolumeShading,
 };
 use std::fmt::{self, Write};
@@ -104,6 +104,12 @@ fn write_object(out: &mut String, object: &Object) -> fmt::Result {
     writeln!(out, "\n[[objects]]")?;
     writeln!(out, "name = {}", quoted(&object.name))?;
     writeln!(out, "points = {}", quoted(&object.points_as_written))?;
+    let units = match object.units {
+        Units::Auto => "auto",
+        Units::Degrees => "degrees",
+        Units::Scene => "scene",
+    };
+    writeln!(out, "units = \"{units}\"")?;
     write_filter(out, &object.filter)?;
     write_columns(out, &object.columns)?;
     writeln!(out, "\n[objects.transform]")?;

@@ -59,6 +59,7 @@ radius = 0.25
 [[objects]]
 name = "the \"knot\" \\ ∂"
 points = "points/knot.ply"
+units = "degrees"
 [objects.filter]
 every = 3
 box = { min = [-1, 0, 4.9e6], max = [1, 0.5, 4.9e6] }

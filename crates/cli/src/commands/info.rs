@@ -26,8 +26,9 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     } else {
         let columns = args.columns.clone().unwrap_or_default();
         let options = ReadOptions { columns, ..ReadOptions::default() };
-        let summary = points::summarize(&args.file, &options, &progress)?;
+        let mut summary = points::summarize(&args.file, &options, &progress)?;
         progress.clear();
+        summary.notes.extend(input::looks_like_degrees(&summary.units, 0));
         input::note_points(&args.file, &summary.notes, summary.dropped, summary.points, &progress);
         if args.json { pretty(&summary.to_json()) } else { format!("{summary}\n") }
     };
@@ -58,7 +59,8 @@ fn of_scene(args: &InfoArgs, progress: &Progress) -> Result<String, Failure> {
 
 fn summarize(set: &PointSet, progress: &Progress) -> PointSummary {
     progress.stage("measuring the spacing", 1);
-    let summary = PointSummary::of(set);
+    let mut summary = PointSummary::of(set);
+    summary.notes.extend(input::looks_like_degrees(&summary.units, 0));
     progress.clear();
     summary
 }
@@ -97,6 +99,7 @@ fn scene_json(scene: &Scene, plan: &Plan, summaries: &[Arc<PointSummary>]) -> Va
         "points": plan.point_count,
         "bounds": { "min": min, "max": max },
         "origin": plan.cloud.origin,
+        "projection": plan.projection.map(|projection| projection.to_string()),
         "objects": objects,
         "settings": scene.settings_toml(),
     })
@@ -139,6 +142,9 @@ fn write_scene(
     writeln!(text, "min      {}", corner(plan.cloud.bounds[0]))?;
     writeln!(text, "max      {}", corner(plan.cloud.bounds[1]))?;
     writeln!(text, "origin   {} (subtracted before 32-bit arithmetic)", corner(plan.cloud.origin))?;
+    if let Some(projection) = plan.projection {
+        writeln!(text, "metres   {projection}")?;
+    }
     for ((object, summary), index) in scene.objects.iter().zip(summaries).zip(0..) {
         writeln!(text, "\nobject {index} '{}', {}", object.name, object.points.display())?;
         for line in summary.to_string().lines() {

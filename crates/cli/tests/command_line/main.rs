@@ -6,6 +6,7 @@
 mod bench;
 mod columns;
 mod compare;
+mod degrees;
 mod disk;
 mod drivers;
 mod faults;

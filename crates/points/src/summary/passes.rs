@@ -214,6 +214,7 @@ impl Second {
             spacing,
             spacing_sample: spacing_sample.flatten(),
             notes: set.notes.clone(),
+            units: set.units.clone(),
         }
     }
 }

@@ -66,6 +66,7 @@ fn every_built_key_is_read() {
             classes: Some(vec![2, 6]),
             voxel: Some(0.05),
         },
+        units: Units::Degrees,
         transform: Transform {
             scale: 2.5,
             rotate: [10.0, 90.0, -5.5],
