@@ -28,9 +28,11 @@ const FEWEST: usize = 2 * NEIGHBORS + 2;
 /// At most this share of a set is stray.
 const MOST: usize = 20;
 /// Points by which the median of r is measured.
-const MEASURED: usize = 512;
+const MEASURED: usize = 256;
 /// Places along the curve, on either side of a point, that bound its r from above before it is searched for.
 const WINDOW: usize = 2 * NEIGHBORS;
+/// Points that follow each other on the curve and are looked at together first.
+const RUN: usize = NEIGHBORS + 4;
 /// Points whose neighbours are searched for, at most: those with the largest bounds.
 const SEARCHED: usize = 1 << 19;
 /// Rounds at most. Each takes away what kept others from being found, and a second is rare.
@@ -73,16 +75,12 @@ impl Strays {
             .collect();
         let mut on_curve: Vec<(u64, u32)> = (0..local.len() as u32).map(|i| (0, i)).collect();
         sort_along_curve(&local, &mut on_curve);
-        let order: Vec<u32> = on_curve.into_iter().map(|(_, place)| place).collect();
+        let order: Vec<u32> = on_curve.par_iter().map(|&(_, place)| place).collect();
         let position = |place: &u32| local[*place as usize].position;
+        let mut on_curve: Vec<[f32; 3]> =
+            order.par_iter().with_min_len(PART).map(position).collect();
         // Of points at one position, the first.
-        let distinct: Vec<u32> = order
-            .iter()
-            .zip(0..)
-            .filter(|&(place, at)| at == 0 || !is_copy(position(place), position(&order[at - 1])))
-            .map(|(&place, _)| place)
-            .collect();
-        let on_curve: Vec<[f32; 3]> = distinct.iter().map(position).collect();
+        on_curve.dedup_by(|b, a| is_copy(*a, *b));
         let stray = stray_places(&on_curve);
         let mut places = Vec::new();
         if !stray.is_empty() {
@@ -188,13 +186,19 @@ fn stray_places(points: &[[f32; 3]]) -> Vec<u32> {
         .collect();
     measured.sort_unstable_by(f64::total_cmp);
     let median = measured[measured.len() / 2];
-    let mut sparse: Vec<(f64, u32)> = (0..count)
+    let enough = 4.0 * median;
+    // Most runs of points lie so close together that each has enough of the others within reach.
+    let is_dense = |run: &[[f32; 3]]| {
+        let [low, high] = run.iter().map(|&p| [p, p]).fold(EMPTY, join);
+        run.len() > NEIGHBORS && square(low, high) <= enough * enough
+    };
+    let mut sparse: Vec<(f64, u32)> = (0..count.div_ceil(RUN))
         .into_par_iter()
-        .with_min_len(PART)
-        .filter_map(|at| {
-            let bound = bound_of(points, at, 4.0 * median);
-            (bound > 4.0 * median).then_some((bound, at as u32))
-        })
+        .with_min_len(PART / RUN)
+        .map(|run| run * RUN..count.min((run + 1) * RUN))
+        .filter(|run| !is_dense(&points[run.clone()]))
+        .flat_map_iter(|run| run.map(|at| (bound_of(points, at, enough), at as u32)))
+        .filter(|(bound, _)| *bound > enough)
         .collect();
     if sparse.len() > SEARCHED {
         sparse.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
@@ -241,16 +245,21 @@ struct Gone {
 fn bound_of(points: &[[f32; 3]], at: usize, enough: f64) -> f64 {
     let around = |reach: usize| {
         let first = at.saturating_sub(reach).min(points.len().saturating_sub(2 * reach + 1));
-        let others = first..points.len().min(first + 2 * reach + 1);
-        others.filter(|&other| other != at).map(|other| square(points[at], points[other]))
+        &points[first..points.len().min(first + 2 * reach + 1)]
     };
-    let near = around(NEIGHBORS / 2).fold(0.0, f64::max).sqrt();
+    // Squares of f32 may be infinite, and then are not enough. The point itself is at no distance.
+    let [x, y, z] = points[at];
+    let near = around(NEIGHBORS / 2).iter().fold(0.0, |most: f32, p| {
+        let [x, y, z] = [p[0] - x, p[1] - y, p[2] - z];
+        most.max(x * x + y * y + z * z)
+    });
+    let near = f64::from(near).sqrt();
     if near <= enough {
         return near;
     }
-    let mut squares: Vec<f64> = around(WINDOW).collect();
-    squares.sort_unstable_by(f64::total_cmp);
-    squares[NEIGHBORS - 1].sqrt()
+    let mut squares: Vec<f64> = around(WINDOW).iter().map(|&p| square(points[at], p)).collect();
+    let (_, &mut farthest, _) = squares.select_nth_unstable_by(NEIGHBORS, f64::total_cmp);
+    farthest.sqrt()
 }
 
 fn square(a: [f32; 3], b: [f32; 3]) -> f64 {
@@ -262,10 +271,21 @@ fn square(a: [f32; 3], b: [f32; 3]) -> f64 {
 struct Boxes<'a> {
     points: &'a [[f32; 3]],
     /// Around points first.
-    levels: Vec<Vec<[[f32; 3]; 2]>>,
+    levels: Vec<Vec<Box3>>,
 }
 
 const FAN: usize = 8;
+
+/// A box, by its lowest and highest corner.
+type Box3 = [[f32; 3]; 2];
+const EMPTY: Box3 = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+
+fn join([low, high]: Box3, [low_too, high_too]: Box3) -> Box3 {
+    [
+        [0, 1, 2].map(|axis| low[axis].min(low_too[axis])),
+        [0, 1, 2].map(|axis| high[axis].max(high_too[axis])),
+    ]
+}
 
 /// What is around a point.
 struct Around {
@@ -279,21 +299,14 @@ struct Around {
 
 impl<'a> Boxes<'a> {
     fn new(points: &'a [[f32; 3]]) -> Self {
-        let join = |[low, high]: [[f32; 3]; 2], [low_too, high_too]: [[f32; 3]; 2]| {
-            [
-                [0, 1, 2].map(|axis| low[axis].min(low_too[axis])),
-                [0, 1, 2].map(|axis| high[axis].max(high_too[axis])),
-            ]
-        };
-        let empty = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
-        let mut levels: Vec<Vec<[[f32; 3]; 2]>> = vec![
+        let mut levels: Vec<Vec<Box3>> = vec![
             points
                 .par_chunks(FAN)
-                .map(|few| few.iter().map(|&p| [p, p]).fold(empty, join))
+                .map(|few| few.iter().map(|&p| [p, p]).fold(EMPTY, join))
                 .collect(),
         ];
         while let Some(below) = levels.last().filter(|below| below.len() > FAN) {
-            let above = below.par_chunks(FAN).map(|few| few.iter().copied().fold(empty, join));
+            let above = below.par_chunks(FAN).map(|few| few.iter().copied().fold(EMPTY, join));
             let above = above.collect();
             levels.push(above);
         }
