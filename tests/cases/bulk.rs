@@ -3,7 +3,8 @@
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use harness::{
-    Bench, assert_same_film, fibonacci_sphere, moved, plan_of, render_twin, set_of, with_attribute,
+    Bench, assert_same_film, fibonacci_sphere, moved, plan_of, random, render_twin, set_of,
+    with_attribute,
 };
 use points::PointSet;
 
@@ -137,4 +138,31 @@ fn volumes_keep_strays_that_lie_near() {
         plan.volumes.infos[0].grid.edge, clean.volumes.infos[0].grid.edge,
         "lengths are the bulk's"
     );
+}
+
+/// Lengths are those of distinct points, and a stray leaves `drop_isolated` its measure.
+#[test]
+fn copies_and_strays_change_no_length() {
+    let isolating =
+        format!("{SCENE}[[objects]]\npoints = \"a.ply\"\n[objects.surface]\ndrop_isolated = 1\n");
+    let mut seed = 11;
+    let uneven: Vec<[f64; 3]> = (fibonacci_sphere(3000).into_iter())
+        .filter(|p| random(&mut seed) < 0.05 + 0.9 * (p[2] > 0.3) as u8 as f64)
+        .collect();
+    let half = [&uneven[..], &uneven[..uneven.len() / 2].repeat(11)].concat();
+    let clean = plan_of(&isolating, &[set_of(uneven.clone())]);
+    assert!(clean.isolated[0] > 10, "{}", clean.isolated[0]);
+    let expected = render_twin(&clean).film;
+    for (name, set) in
+        [("copies", set_of(half.clone())), ("a stray", with(&uneven, &[[1e30, 0.0, 0.0]]))]
+    {
+        let plan = plan_of(&isolating, &[set]);
+        assert_same_film(name, &render_twin(&plan).film, &expected);
+    }
+    let lengths = |positions: &[[f64; 3]]| {
+        let set = with_attribute(set_of(positions.to_vec()), "s", |_| 1.0);
+        let plan = plan_of(&fog("boundary = \"auto\""), &[set]);
+        (plan.volumes.infos[0].grid.edge, plan.cloud.points.len())
+    };
+    assert_eq!(lengths(&half), lengths(&uneven));
 }

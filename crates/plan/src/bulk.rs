@@ -1,7 +1,9 @@
 //! What a scene is framed, centred and measured by: its points without strays ([`points::Strays`]).
 
-use crate::{PlanError, degrees};
-use points::{Cloud, CloudError, ObjectPoints, PointSet, Strays, origin_of, rough_origin};
+use crate::{PlanError, isolated};
+use points::{
+    Cloud, CloudError, ObjectPoints, PointSet, Strays, Watch, bounds_of, origin_of, rough_origin,
+};
 use rayon::prelude::*;
 use scene::{Object, Scene};
 use std::fmt;
@@ -56,7 +58,7 @@ fn short(length: f64) -> String {
     }
 }
 
-/// The points of all objects without strays.
+/// The points of all objects without strays, and without those that `drop_isolated` drops.
 pub(crate) struct Bulk {
     pub sets: Vec<Arc<PointSet>>,
     pub world: Vec<World>,
@@ -64,38 +66,56 @@ pub(crate) struct Bulk {
     /// droplet counts; a grid of cells over empty space is of no use.
     pub particles: Vec<(Arc<PointSet>, World)>,
     pub apart: Vec<Apart>,
+    /// How many isolated points each object lost.
+    pub isolated: Vec<u64>,
+    /// Points of all objects, strays included.
+    pub point_count: u64,
     bounds: [[f64; 3]; 2],
     /// Along a Hilbert curve, where that is the cloud's.
     orders: Vec<Option<Vec<u32>>>,
 }
 
 impl Bulk {
-    /// `files` are the sets as read, in the coordinates of their files.
+    /// `files` are the sets as read, in the coordinates of their files. Fails where `drop_isolated` meets points that
+    /// f32 cannot bear, or the watcher asks for an end.
     pub(crate) fn of(
         scene: &Scene,
         sets: &[Arc<PointSet>],
         files: &[Arc<PointSet>],
+        watch: &dyn Watch,
     ) -> Result<Self, PlanError> {
+        watch.stage("sorting points", sets.iter().map(|set| set.len() as u64).sum());
         let placed = |(object, set): (&Object, &Arc<PointSet>)| Arc::new(placed(object, set));
         let world: Vec<World> = scene.objects.iter().zip(sets).map(placed).collect();
         let all: Vec<&[[f64; 3]]> = world.iter().map(|world| &world[..]).collect();
         let origin = rough_origin(&all).ok_or(CloudError::Empty)?;
-        let found: Vec<Strays> = all.iter().map(|world| Strays::find(world, origin)).collect();
-        let bounds = points::bounds_of(found.iter().map(|strays| &strays.bulk[..]))
-            .ok_or(CloudError::Empty)?;
+        let mut found = Vec::new();
+        let mut done = 0;
+        for world in all {
+            if watch.interrupted() {
+                return Err(PlanError::Interrupted);
+            }
+            found.push(Strays::find(world, origin));
+            done += world.len() as u64;
+            watch.done(done);
+        }
         let mut bulk = Self {
             sets: Vec::new(),
             world: Vec::new(),
             particles: Vec::new(),
             apart: Vec::new(),
-            bounds,
+            isolated: Vec::new(),
+            point_count: 0,
+            bounds: [[0.0; 3]; 2],
             orders: Vec::new(),
         };
-        for (index, strays) in found.into_iter().enumerate() {
-            let given = (&sets[index], &world[index], &files[index]);
-            bulk.add(given, strays, scene.objects[index].volume.is_some());
+        for (index, (object, strays)) in scene.objects.iter().zip(found).enumerate() {
+            bulk.add(object, strays, (&sets[index], &world[index], &files[index]));
+            bulk.drop_isolated(object, watch)?;
         }
-        if origin_of(bounds) != origin {
+        bulk.bounds =
+            bounds_of(bulk.world.iter().map(|world| &world[..])).ok_or(CloudError::Empty)?;
+        if origin_of(bulk.bounds) != origin {
             bulk.orders.fill(None);
         }
         Ok(bulk)
@@ -103,10 +123,11 @@ impl Bulk {
 
     fn add(
         &mut self,
-        (set, world, file): (&Arc<PointSet>, &World, &Arc<PointSet>),
+        object: &Object,
         strays: Strays,
-        has_volume: bool,
+        (set, world, file): (&Arc<PointSet>, &World, &PointSet),
     ) {
+        self.point_count += set.len() as u64;
         let all = (Arc::clone(set), Arc::clone(world));
         if strays.places.is_empty() {
             self.sets.push(Arc::clone(set));
@@ -124,18 +145,17 @@ impl Bulk {
             of: world.len() as u64,
             farthest: strays.farthest,
             size: sides.into_iter().fold(0.0, f64::max),
-            filter: strays.filter(self.sets.len(), &degrees::in_file(set, file)),
+            filter: strays.filter(self.sets.len(), &file.positions),
         });
         let without = |places: &[u32]| {
             let mut keep = vec![true; world.len()];
             places.iter().for_each(|&place| keep[place as usize] = false);
-            let positions = world.iter().zip(&keep).filter(|&(_, keep)| *keep).map(|(&p, _)| p);
-            (Arc::new(set.filtered(|i| keep[i])), Arc::new(positions.collect()))
+            kept(set, world, &keep)
         };
         let (bulk_set, bulk_world) = without(&strays.places);
         let far = |&&place: &&u32| strays.distance(&world[place as usize]) > diagonal;
         let far: Vec<u32> = strays.places.iter().filter(far).copied().collect();
-        self.particles.push(match (has_volume, far.is_empty()) {
+        self.particles.push(match (object.volume.is_some(), far.is_empty()) {
             (false, _) => (Arc::clone(&bulk_set), Arc::clone(&bulk_world)),
             (true, true) => all,
             (true, false) => without(&far),
@@ -143,6 +163,29 @@ impl Bulk {
         self.sets.push(bulk_set);
         self.world.push(bulk_world);
         self.orders.push(None);
+    }
+
+    /// Drops the isolated points of the last object, where it asks for that: after its strays, since one of these makes
+    /// the deviations so large that no other point is beyond them.
+    fn drop_isolated(&mut self, object: &Object, watch: &dyn Watch) -> Result<(), PlanError> {
+        let index = self.isolated.len();
+        self.isolated.push(0);
+        let deviations = object.surface.drop_isolated;
+        if deviations > 0.0 {
+            let set = &self.sets[index];
+            let keep = isolated::near_points(set, object.surface.neighbors, deviations, watch)?;
+            let dropped = keep.iter().filter(|keep| !**keep).count();
+            if dropped > 0 {
+                let (set, world) = kept(set, &self.world[index], &keep);
+                self.isolated[index] = dropped as u64;
+                self.point_count -= dropped as u64;
+                self.particles[index] = (Arc::clone(&set), Arc::clone(&world));
+                self.sets[index] = set;
+                self.world[index] = world;
+                self.orders[index] = None;
+            }
+        }
+        Ok(())
     }
 
     /// The cloud of what carries a surface: of each object these points, which are all of its bulk or some.
@@ -167,6 +210,12 @@ impl Bulk {
             .collect();
         Cloud::within(self.bounds, &object_points)
     }
+}
+
+/// The points of a set that are to be kept, with their places in the world.
+fn kept(set: &PointSet, world: &World, keep: &[bool]) -> (Arc<PointSet>, World) {
+    let positions = world.iter().zip(keep).filter(|&(_, keep)| *keep).map(|(&p, _)| p);
+    (Arc::new(set.filtered(|i| keep[i])), Arc::new(positions.collect()))
 }
 
 /// The points of an object in the world.

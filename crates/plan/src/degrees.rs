@@ -11,7 +11,6 @@ use geographiclib_rs::{Geodesic, InverseGeodesic};
 use points::{PointSet, Units, Watch};
 use rayon::prelude::*;
 use scene::{Object, Scene};
-use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
 
@@ -78,17 +77,6 @@ pub(crate) fn projected(
         };
     }
     Ok((out, Some(projection)))
-}
-
-/// The positions of a set's points as they are in its file, of which it has some, perhaps in metres.
-pub(crate) fn in_file<'a>(set: &'a Arc<PointSet>, file: &'a PointSet) -> Cow<'a, [[f64; 3]]> {
-    let first = set.file_index.first().and_then(|index| file.file_index.binary_search(index).ok());
-    if first.is_some_and(|at| file.positions.get(at) == set.positions.first()) {
-        return Cow::Borrowed(&set.positions);
-    }
-    let places =
-        set.file_index.iter().filter_map(|index| file.file_index.binary_search(index).ok());
-    Cow::Owned(places.map(|at| file.positions[at]).collect())
 }
 
 fn is_place(p: &[f64; 3]) -> bool {

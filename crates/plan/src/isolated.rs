@@ -11,7 +11,7 @@ use points::{Cloud, NeighborSearch, ObjectPoints, PointSet, Watch};
 use rayon::prelude::*;
 use std::cmp::Ordering::{Equal, Less};
 
-/// The set without its isolated points, and how many those are; `None` where there are none.
+/// Which points of a set are not isolated. Points at one position count once, and share their fate.
 ///
 /// Once points are gone, others may have lost the neighbours that kept them: rounds follow each other,
 /// with the limit of the first, until all that is left is near. From the second on, only points that lost
@@ -19,25 +19,24 @@ use std::cmp::Ordering::{Equal, Less};
 ///
 /// # Errors
 /// Points that f32 cannot bear; an interruption.
-pub(crate) fn without_isolated(
+pub(crate) fn near_points(
     set: &PointSet,
     neighbors: u32,
     deviations: f64,
     watch: &dyn Watch,
-) -> Result<Option<(PointSet, u64)>, PlanError> {
+) -> Result<Vec<bool>, PlanError> {
     watch.stage("looking for isolated points", set.len() as u64);
     let object = ObjectPoints::new(&set.positions, &set.file_index);
-    let cloud = Cloud::new(&[object])?;
+    let cloud = Cloud::distinct(&[object])?;
     let mut around = Around::new(&cloud, neighbors, watch)?;
     // Added up in the order of the file, whatever the order in memory.
     let distances = || cloud.order.iter().map(|&slot| around.distances[slot as usize]);
-    let count = set.len() as f64;
+    let count = cloud.points.len() as f64;
     let mean = distances().sum::<f64>() / count;
     let deviation = (distances().map(|d| (d - mean).powi(2)).sum::<f64>() / count).sqrt();
     let limit = (mean + deviations * deviation).max(2.0 * mean);
-    let dropped = around.drop_beyond(limit, watch)?;
-    let kept = || set.filtered(|i| !around.is_dropped[cloud.order[i] as usize]);
-    Ok((dropped > 0).then(|| (kept(), dropped as u64)))
+    around.drop_beyond(limit, watch)?;
+    Ok((0..set.len()).map(|i| !around.is_dropped[cloud.slot(0, i) as usize]).collect())
 }
 
 /// How far from its neighbours each point is, by slot.
@@ -75,8 +74,8 @@ impl<'a> Around<'a> {
         Ok(around)
     }
 
-    /// Drops points beyond a limit until none is, and says how many. What would leave none is not done.
-    fn drop_beyond(&mut self, limit: f64, watch: &dyn Watch) -> Result<usize, PlanError> {
+    /// Drops points beyond a limit until none is. What would leave none is not done.
+    fn drop_beyond(&mut self, limit: f64, watch: &dyn Watch) -> Result<(), PlanError> {
         let all = 0..self.cloud.points.len() as u32;
         let mut far: Vec<u32> =
             all.into_par_iter().filter(|&at| self.is_beyond(at, limit)).collect();
@@ -104,7 +103,7 @@ impl<'a> Around<'a> {
                 far.extend(some.iter().filter(|&&at| self.is_beyond(at, limit)));
             }
         }
-        Ok(self.cloud.points.len() - left)
+        Ok(())
     }
 
     fn is_beyond(&self, at: u32, limit: f64) -> bool {
@@ -145,6 +144,18 @@ mod tests {
     use super::*;
     use points::{Attribute, Unwatched, Values};
     use std::sync::Mutex;
+
+    /// The set that is left, and how many points are not; `None` where all are.
+    fn without_isolated(
+        set: &PointSet,
+        neighbors: u32,
+        deviations: f64,
+        watch: &dyn Watch,
+    ) -> Result<Option<(PointSet, u64)>, PlanError> {
+        let keep = near_points(set, neighbors, deviations, watch)?;
+        let dropped = keep.iter().filter(|keep| !**keep).count() as u64;
+        Ok((dropped > 0).then(|| (set.filtered(|i| keep[i]), dropped)))
+    }
 
     fn grid_and(strays: &[[f64; 3]]) -> PointSet {
         let mut positions: Vec<[f64; 3]> =
@@ -202,9 +213,10 @@ mod tests {
         let mut limit = None;
         for rounds in 0.. {
             let object = ObjectPoints::new(&left.positions, &left.file_index);
-            let cloud = Cloud::new(&[object]).expect("bearable");
-            let k = neighbors.min(left.len() - 1);
-            let lists = NeighborSearch::new(&cloud.points, 0).nearest(0..left.len(), k);
+            let cloud = Cloud::distinct(&[object]).expect("bearable");
+            let count = cloud.points.len();
+            let k = neighbors.min(count - 1);
+            let lists = NeighborSearch::new(&cloud.points, 0).nearest(0..count, k);
             let mean = |&slot: &u32| {
                 let list = &lists[slot as usize * k..][..k];
                 vectors(&cloud.points, slot as usize, list).map(length).sum::<f64>() / k as f64
@@ -216,10 +228,11 @@ mod tests {
                 (mean + deviations * (squares / means.len() as f64).sqrt()).max(2.0 * mean)
             });
             let near = means.iter().filter(|&&mean| mean <= limit).count();
-            if near == left.len() || near == 0 {
+            if near == count || near == 0 {
                 return (left.file_index, rounds);
             }
-            left = left.filtered(|i| means[i] <= limit);
+            let mean_of = |i: usize| mean(&cloud.slot(0, i));
+            left = left.filtered(|i| mean_of(i) <= limit);
         }
         unreachable!("rounds end");
     }

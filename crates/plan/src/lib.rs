@@ -177,19 +177,16 @@ impl Plan {
         watch: &dyn Watch,
     ) -> Result<Self, PlanError> {
         assert_eq!(scene.objects.len(), sets.len(), "one point set an object");
-        let files = sets;
-        let (metric, projection) = degrees::projected(scene, files, watch)?;
-        let (sets, isolated) = drop_isolated(scene, &metric, watch)?;
+        let (metric, projection) = degrees::projected(scene, sets, watch)?;
         let image_size = scene.image.size;
         let window = checked_crop(crop, image_size)?;
-        watch.stage("sorting points", sets.iter().map(|set| set.len() as u64).sum());
-        let bulk = Bulk::of(scene, &sets, files)?;
+        let bulk = Bulk::of(scene, &metric, sets, watch)?;
         let surface_sets: Vec<Arc<PointSet>> = (scene.objects.iter().zip(&bulk.sets))
             .map(|(object, set)| volumes::surface_points(object, set, watch))
             .collect::<Result<_, _>>()?;
         watch.stage("sorting points", surface_sets.iter().map(|set| set.len() as u64).sum());
         let cloud = bulk.cloud(scene, &surface_sets)?;
-        let coarse = precision::warnings(scene, files, &metric, cloud.origin);
+        let coarse = precision::warnings(scene, sets, &metric, cloud.origin);
         let volumes = volumes::plan_volumes(scene, &bulk, &cloud, watch)?;
         let fits = scene
             .objects
@@ -220,7 +217,7 @@ impl Plan {
             ray_loop: scene.render.ray_loop,
             primary: scene.render.primary,
             secondary: scene.render.secondary,
-            point_count: sets.iter().map(|set| set.len() as u64).sum(),
+            point_count: bulk.point_count,
             volumes,
             camera_media: inside::media_of_eye(scene, &bulk.sets, &bulk.world, camera.eye),
             samples: scene.image.samples,
@@ -258,7 +255,7 @@ impl Plan {
             image_size,
             window,
             names: scene.objects.iter().map(|object| object.name.clone()).collect(),
-            isolated,
+            isolated: bulk.isolated,
             apart: bulk.apart,
             projection,
             coarse,
@@ -420,28 +417,6 @@ pub fn checked_crop(crop: Option<Window>, image: [u32; 2]) -> Result<Window, Pla
             && crop.origin[axis].checked_add(crop.size[axis]).is_some_and(|end| end <= image[axis])
     });
     if inside { Ok(crop) } else { Err(PlanError::Crop { crop, image }) }
-}
-
-/// The sets without the points that their objects drop, and how many those are.
-fn drop_isolated(
-    scene: &Scene,
-    sets: &[Arc<PointSet>],
-    watch: &dyn Watch,
-) -> Result<(Vec<Arc<PointSet>>, Vec<u64>), PlanError> {
-    let mut kept = Vec::new();
-    let mut counts = Vec::new();
-    for (object, set) in scene.objects.iter().zip(sets) {
-        let deviations = object.surface.drop_isolated;
-        let near = match deviations > 0.0 {
-            true => isolated::without_isolated(set, object.surface.neighbors, deviations, watch)?,
-            false => None,
-        };
-        let (set, dropped) =
-            near.map_or_else(|| (Arc::clone(set), 0), |(set, dropped)| (Arc::new(set), dropped));
-        kept.push(set);
-        counts.push(dropped);
-    }
-    Ok((kept, counts))
 }
 
 fn local_light(light: &Light, origin: [f64; 3]) -> layout::Light {

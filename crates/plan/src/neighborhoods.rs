@@ -55,15 +55,15 @@ pub(crate) fn length(v: [f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// What `of` makes of the vectors from each point to its nearest others, in the order of the set.
+/// What `of` makes of the vectors from each point to its nearest others, by slot of the cloud of distinct points.
 fn of_each<T: Copy + Send>(
     positions: &[[f64; 3]],
     neighbors: usize,
     watch: &dyn Watch,
     of: impl Fn(&[[f64; 3]]) -> T + Sync,
-) -> Result<Vec<T>, PlanError> {
+) -> Result<(Cloud, Vec<T>), PlanError> {
     let file_index: Vec<u32> = (0..positions.len() as u32).collect();
-    let cloud = Cloud::new(&[ObjectPoints::new(positions, &file_index)])?;
+    let cloud = Cloud::distinct(&[ObjectPoints::new(positions, &file_index)])?;
     let points = cloud.points.as_slice();
     let k = at_most(neighbors, points.len());
     let search = NeighborSearch::new(points, 0);
@@ -77,15 +77,17 @@ fn of_each<T: Copy + Send>(
         };
         by_slot.par_extend(lists.par_chunks(k).zip(batch).map_init(Vec::new, of_list));
     })?;
-    Ok(cloud.order.iter().map(|&slot| by_slot[slot as usize]).collect())
+    Ok((cloud, by_slot))
 }
 
 /// The mean distance to the 16th neighbour.
 pub(crate) fn spacing(positions: &[[f64; 3]], watch: &dyn Watch) -> Result<f64, PlanError> {
     watch.stage("measuring the spacing of a volume", positions.len() as u64);
     let farthest = |others: &[[f64; 3]]| others.iter().map(|&y| length(y)).fold(0.0, f64::max);
-    let all = of_each(positions, NEIGHBORS, watch, farthest)?;
-    Ok(all.iter().sum::<f64>() / all.len().max(1) as f64)
+    let (cloud, by_slot) = of_each(positions, NEIGHBORS, watch, farthest)?;
+    // Added up in the order of the file, whatever the order in memory.
+    let all = cloud.order.iter().map(|&slot| by_slot[slot as usize]);
+    Ok(all.sum::<f64>() / by_slot.len().max(1) as f64)
 }
 
 /// Which points have a plane through them that has all their neighbours on one side.
@@ -94,7 +96,8 @@ pub(crate) fn open_points(
     watch: &dyn Watch,
 ) -> Result<Vec<bool>, PlanError> {
     watch.stage("finding boundary points", positions.len() as u64);
-    of_each(positions, BOUNDARY_NEIGHBORS, watch, is_open)
+    let (cloud, by_slot) = of_each(positions, BOUNDARY_NEIGHBORS, watch, is_open)?;
+    Ok((0..positions.len()).map(|i| by_slot[cloud.slot(0, i) as usize]).collect())
 }
 
 /// Begins with the plane across the mean of all directions, and turns it.

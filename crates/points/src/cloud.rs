@@ -62,12 +62,21 @@ pub struct Cloud {
     pub objects: Vec<SlotRange>,
     /// Slots by ordinal, that is in the order of (object, place in the file).
     pub order: Vec<u32>,
-    /// Of each object, which of the points given count, ascending; `None` where all do.
-    pub counted: Vec<Option<Vec<u32>>>,
+    /// The copies among the points given of each object; `None` where there are none.
+    copies: Vec<Option<Copies>>,
     /// The world position that was subtracted.
     pub origin: [f64; 3],
     /// World bounding box: lowest and highest corner.
     pub bounds: [[f64; 3]; 2],
+}
+
+/// Points of an object that lie where an earlier one lies, and do not count.
+#[derive(Debug, Clone, PartialEq)]
+struct Copies {
+    /// Places of the points that count, ascending.
+    counted: Vec<u32>,
+    /// Of each point given, the slot of the one that counts for it.
+    slots: Vec<u32>,
 }
 
 /// What makes points unusable together.
@@ -108,8 +117,16 @@ impl Cloud {
         Self::build(bounds, objects, false)
     }
 
-    /// The points of a scene whose box is given, which may reach farther than they. Those of one object at equal
-    /// f32 positions count once: the one that comes first in its file.
+    /// The same, where points of one object at equal f32 positions count once: the one that comes first in its file.
+    ///
+    /// # Errors
+    /// As [`Cloud::new`].
+    pub fn distinct(objects: &[ObjectPoints<'_>]) -> Result<Self, CloudError> {
+        let all = objects.iter().map(|object| object.positions);
+        Self::within(bounds_of(all).ok_or(CloudError::Empty)?, objects)
+    }
+
+    /// The distinct points of a scene whose box is given, which may reach farther than they.
     ///
     /// # Errors
     /// As [`Cloud::new`], but for a scene without points here.
@@ -131,7 +148,7 @@ impl Cloud {
             points: Vec::with_capacity(count),
             objects: Vec::new(),
             order: Vec::with_capacity(count),
-            counted: Vec::new(),
+            copies: Vec::new(),
             origin: origin_of(bounds),
             bounds,
         };
@@ -181,23 +198,42 @@ impl Cloud {
             let [a, b] = [pair[0], pair[1]].map(|place| local[place as usize].position);
             is_copy(a, b)
         };
-        if once && places.par_windows(2).any(is_copy_of_last) {
-            let is_first = |at: usize| at == 0 || !is_copy_of_last(&places[at - 1..=at]);
-            let firsts = (0..places.len()).filter(|&at| is_first(at));
-            places = Cow::Owned(firsts.map(|at| places[at]).collect());
+        let mut slots = vec![u32::MAX; local.len()];
+        let has_copies = once && places.par_windows(2).any(is_copy_of_last);
+        if has_copies {
+            let mut firsts: Vec<u32> = Vec::new();
+            for (at, &place) in places.iter().enumerate() {
+                if at == 0 || !is_copy_of_last(&places[at - 1..=at]) {
+                    firsts.push(place);
+                }
+                slots[place as usize] = (first + firsts.len() - 1) as u32;
+            }
+            places = Cow::Owned(firsts);
+            let mut counted = places.to_vec();
+            counted.sort_unstable();
+            self.order.extend(counted.iter().map(|&place| slots[place as usize]));
+            self.copies.push(Some(Copies { counted, slots }));
+        } else {
+            for (slot, &i) in places.iter().enumerate() {
+                slots[i as usize] = (first + slot) as u32;
+            }
+            self.order.append(&mut slots);
+            self.copies.push(None);
         }
         let in_order = places.par_iter().with_min_len(PART);
         self.points.par_extend(in_order.map(|&i| local[i as usize]));
-        let mut slots = vec![u32::MAX; local.len()];
-        for (slot, &i) in places.iter().enumerate() {
-            slots[i as usize] = (first + slot) as u32;
-        }
-        let all_count = places.len() == local.len();
-        let counts = |i: &u32| slots[*i as usize] != u32::MAX;
-        self.counted.push((!all_count).then(|| (0..local.len() as u32).filter(counts).collect()));
-        self.order.extend(slots.into_iter().filter(|&slot| slot != u32::MAX));
         self.objects.push(SlotRange { first_slot: first as u32, count: places.len() as u32 });
         Ok(())
+    }
+
+    /// The slot of a point of an object, by its place among those given: of a copy, that of the point that counts.
+    #[must_use]
+    pub fn slot(&self, object: usize, place: usize) -> u32 {
+        match &self.copies[object] {
+            Some(copies) => copies.slots[place],
+            // As many ordinals as slots.
+            None => self.order[self.objects[object].first_slot as usize + place],
+        }
     }
 
     /// The values of one object, given in file order, in the order of its slots.
@@ -207,8 +243,8 @@ impl Cloud {
         let mut sorted = vec![T::default(); range.len()];
         let mut put = |(&slot, value): (&u32, T)| sorted[slot as usize - range.start] = value;
         let slots = self.order[range.clone()].iter();
-        match &self.counted[object] {
-            Some(counted) => {
+        match &self.copies[object] {
+            Some(Copies { counted, .. }) => {
                 slots.zip(counted.iter().map(|&i| values[i as usize])).for_each(&mut put);
             }
             None => slots.zip(values.iter().copied()).for_each(&mut put),
