@@ -5,9 +5,10 @@ use crate::errors::Failure;
 use crate::memory;
 use crate::progress::Progress;
 use plan::{MapProjection, Plan, SceneImages, Window};
-use points::{Column, Columns, Dropped, PointSet, ReadOptions, Wanted, Watch};
+use points::{Column, Columns, Dropped, PointSet, ReadOptions, Upwards, Wanted, Watch};
 use scene::{Albedo, ImageFile, Object, Scene, Units, Up};
 use serde_json::json;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::fs;
@@ -22,7 +23,9 @@ pub struct Input {
     /// What to render.
     pub scene: Scene,
     /// What turns the view where the scene has no camera.
-    pub up: Up,
+    up: Up,
+    /// Of a point file whose points decide which way is up: the values that the scene was made with.
+    undecided: Option<Vec<String>>,
 }
 
 /// Options of the command line that stand for values of the scene, later ones over earlier ones.
@@ -120,24 +123,12 @@ impl Input {
     /// Loads and checks a scene file, or makes the scene that a point file means. Reads no points.
     pub fn load(path: &Path, values: &SceneValues, up: Option<UpAxis>) -> Result<Self, Failure> {
         let set = values.as_set();
-        let own_up = || match points::usual_up(path) {
-            _ if is_scene_file(path) => Up::Y,
-            points::Upwards::Y => Up::Y,
-            points::Upwards::Z => Up::Z,
-            points::Upwards::MinusY => Up::MinusY,
-        };
-        let mut turned = up.map_or_else(own_up, Up::from);
-        let mut loaded = if is_scene_file(path) {
+        let turned = up.map_or(Up::Y, Up::from);
+        let loaded = if is_scene_file(path) {
             Scene::load(path, &set)
         } else {
             Scene::for_point_file(path, turned, &set)
         };
-        let in_degrees = |scene: &Scene| scene.objects.iter().any(|o| o.units == Units::Degrees);
-        if !is_scene_file(path) && up.is_none() && loaded.as_ref().is_ok_and(in_degrees) {
-            // Projected, they are east, north and up.
-            turned = Up::Z;
-            loaded = Scene::for_point_file(path, turned, &set);
-        }
         let mut scene = loaded.map_err(|error| values.name_options(error.into()))?;
         if let (true, Some(_), Some(_)) = (is_scene_file(path), up, scene.camera) {
             return Err(Failure::usage(format!(
@@ -151,7 +142,42 @@ impl Input {
             object.points_as_written =
                 path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         }
-        Ok(Self { path: path.into(), scene, up: turned })
+        let undecided = (!is_scene_file(path) && up.is_none()).then_some(set);
+        Ok(Self { path: path.into(), scene, up: turned, undecided })
+    }
+
+    /// The scene, and which way is up in it, now that the points are known.
+    fn upright(
+        &self,
+        sets: &[Arc<PointSet>],
+        progress: &Progress,
+    ) -> Result<(Cow<'_, Scene>, Up), Failure> {
+        let in_degrees = (self.scene.objects.iter().zip(sets)).any(|(object, set)| {
+            object.units == Units::Degrees || matches!(set.units, points::Units::Degrees(_))
+        });
+        let found = match in_degrees {
+            true => Some((Upwards::Z, "as on maps")),
+            false => sets.first().and_then(|set| set.up),
+        };
+        let (Some(values), Some((up, why))) = (&self.undecided, found) else {
+            return Ok((Cow::Borrowed(&self.scene), self.up));
+        };
+        let turned = match up {
+            Upwards::Y => Up::Y,
+            Upwards::Z => Up::Z,
+            Upwards::MinusY => Up::MinusY,
+        };
+        if self.scene.camera.is_none() {
+            let file = self.path.display();
+            let others: Vec<String> = ([Upwards::Y, Upwards::Z, Upwards::MinusY].iter())
+                .filter(|other| **other != up)
+                .map(|other| format!("--up {}", other.name()))
+                .collect();
+            let [axis, others] = [up.name().to_owned(), others.join(" or ")];
+            progress.note(&format!("{file}: {axis} is up, {why}; {others} says otherwise"));
+        }
+        let lights = Scene::for_point_file(&self.path, turned, values)?.lights;
+        Ok((Cow::Owned(Scene { lights, ..self.scene.clone() }), turned))
     }
 
     /// Every file that the picture is made from.
@@ -258,7 +284,8 @@ impl Input {
         memory::require_points(sets.iter().map(|set| set.len() as u64).sum())?;
         let images = self.read_images(progress)?;
         self.note_units(sets, progress);
-        let plan = Plan::watched(&self.scene, sets, &images, crop, self.up, progress);
+        let (scene, up) = self.upright(sets, progress)?;
+        let plan = Plan::watched(&scene, sets, &images, crop, up, progress);
         progress.clear();
         let plan = plan?;
         if let Some(projection) = &plan.projection {
@@ -270,6 +297,9 @@ impl Input {
         for apart in &plan.apart {
             let file = self.scene.objects[apart.object].points.display();
             progress.note(&format!("warning: {file}: {apart}"));
+        }
+        for missing in &plan.missing {
+            progress.note(&format!("warning: {missing}"));
         }
         for image in &plan.cleaned {
             progress.note(&format!(

@@ -80,6 +80,8 @@ pub struct Row {
     pub dropped: u64,
     /// Points that the filters of all objects left out.
     pub filtered_out: u64,
+    /// Points that lack what is shown of them: a colour, an attribute, the scalar of a volume.
+    pub missing: u64,
     /// How the fits ended.
     pub fits: Fits,
     /// The grids, the finest first: one, or several where sizes of trust balls differ; none where no ray goes through
@@ -245,6 +247,7 @@ impl Row {
             points,
             dropped: measured.dropped,
             filtered_out: measured.filtered_out,
+            missing: plan.missing.iter().map(|missing| missing.points).sum(),
             fits: Fits::of(built),
             grids: built.grids().into_iter().flat_map(|grids| &grids.levels).map(grid_of).collect(),
             tree: built.tree().map(|tree| Tree { nodes: tree.node_count() }),

@@ -2,8 +2,10 @@
 //! map, or places in a texture; and how a texture is projected.
 
 use crate::PlanError;
+use crate::missing::{NO_VALUE, marked};
+use crate::objects::DEFAULT_ALBEDO;
 use film::linear_from_srgb;
-use points::PointSet;
+use points::{ColorEncoding, PointSet};
 use scene::{ColorMap, Object, TextureAxis, Transform};
 
 /// Names that exporters give to the two places of a point in a texture.
@@ -13,20 +15,57 @@ const FAR: f64 = 1e6;
 /// Under this, a bounding box is flat.
 const FLAT: f64 = 1e-30;
 
-/// Colours as files have them, without what no picture can show.
-pub(crate) fn own_colors(colors: &[[f32; 3]]) -> Vec<[f32; 3]> {
-    let clean = |c: f32| if c.is_nan() { 0.0 } else { c.clamp(0.0, 1e15) };
-    colors.iter().map(|color| color.map(clean)).collect()
+/// Decimals that writers give fractions of 1 have at least four, so that they are this near to the bytes that
+/// they were.
+const NEAR_A_BYTE: f64 = 6e-5;
+
+/// Colours as files have them. Where all of them are floats that were bytes, they are those of the bytes, so
+/// that a cloud has one picture in every encoding. One that is not a number is as if the object had none.
+pub(crate) fn own_colors(set: &PointSet, colors: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    let floats = [ColorEncoding::Fraction, ColorEncoding::Fraction255];
+    let mut own = match set.color_encoding {
+        Some(encoding) if floats.contains(&encoding) => {
+            bytes_of(colors).unwrap_or_else(|| colors.to_vec())
+        }
+        _ => colors.to_vec(),
+    };
+    for color in own.iter_mut().filter(|color| color.iter().any(|c| c.is_nan())) {
+        *color = marked(DEFAULT_ALBEDO);
+    }
+    own
 }
 
-/// The values of an attribute, or of a coordinate where no attribute is called x, y or z. Otherwise the names
-/// that would do.
+/// The colours of the bytes that these were, if all were.
+fn bytes_of(colors: &[[f32; 3]]) -> Option<Vec<[f32; 3]>> {
+    let linear = |part: f64| linear_from_srgb(part.clamp(0.0, 1.0)) as f32;
+    // Of each byte, what is too near to be anything else, and what the reader makes of it.
+    let bytes: Vec<[f32; 3]> = (0..=255u8)
+        .map(|byte| {
+            let part = f64::from(byte) / 255.0;
+            [linear(part - NEAR_A_BYTE), linear(part), linear(part + NEAR_A_BYTE)]
+        })
+        .collect();
+    let byte_of = |c: f32| {
+        let [low, own, _] = *bytes.get(bytes.partition_point(|[.., high]| *high < c))?;
+        (low <= c).then_some(own)
+    };
+    let color_of = |color: &[f32; 3]| {
+        // What is no number is none of a byte either.
+        let [r, g, b] = color.map(|c| if c.is_nan() { Some(c) } else { byte_of(c) });
+        Some([r?, g?, b?])
+    };
+    colors.iter().map(color_of).collect()
+}
+
+/// The values of the attribute that a name means, or of a coordinate where no attribute is called x, y or z.
+/// Otherwise the names that would do.
 pub(crate) fn attribute_values(set: &PointSet, name: &str) -> Result<Vec<f64>, String> {
     let axes = ["x", "y", "z"];
-    match (set.attribute(name), axes.iter().position(|axis| *axis == name)) {
-        (Some(values), _) => Ok(values.iter().collect()),
-        (None, Some(axis)) => Ok(set.positions.iter().map(|p| p[axis]).collect()),
-        (None, None) => {
+    let axis = axes.iter().position(|axis| axis.eq_ignore_ascii_case(name));
+    match (set.attribute(name), axis, set.attribute_meant(name)) {
+        (Some(values), ..) | (None, None, Some(values)) => Ok(values.iter().collect()),
+        (None, Some(axis), _) => Ok(set.positions.iter().map(|p| p[axis]).collect()),
+        (None, None, None) => {
             let known = set.attributes.iter().map(|attribute| attribute.name.as_str());
             let left_out = set.left_out.iter().map(String::as_str);
             Err(known.chain(left_out).chain(axes).collect::<Vec<_>>().join(", "))
@@ -34,7 +73,7 @@ pub(crate) fn attribute_values(set: &PointSet, name: &str) -> Result<Vec<f64>, S
     }
 }
 
-/// The colours of an attribute of the object's points, linear. What is no number is black.
+/// The colours of an attribute of the object's points, linear. What is no number is marked.
 pub(crate) fn attribute_colors(
     object: &Object,
     set: &PointSet,
@@ -52,7 +91,8 @@ pub(crate) fn attribute_colors(
             Some(range.map_or([value; 2], |[low, high]| [low.min(value), high.max(value)]))
         })
     };
-    let Some([low, high]) = range.or_else(own_range) else {
+    let any = values.iter().any(|value| !value.is_nan());
+    let Some([low, high]) = range.or_else(own_range).filter(|_| any) else {
         return Err(PlanError::NoValues {
             name: object.name.clone(),
             attribute: name.to_owned(),
@@ -62,7 +102,7 @@ pub(crate) fn attribute_colors(
     let span = high - low;
     let color = |value: f64| {
         if value.is_nan() {
-            return [0.0; 3];
+            return marked(NO_VALUE);
         }
         // Halves, so that no difference of two numbers overflows.
         let part = match span > 0.0 {
@@ -142,6 +182,44 @@ mod tests {
             for i in 0..=100 {
                 assert!(mapped(map, f64::from(i) / 100.0).iter().all(|c| (0.0..=1.0).contains(c)));
             }
+        }
+    }
+
+    fn set_of(positions: usize, encoding: ColorEncoding) -> PointSet {
+        PointSet {
+            positions: vec![[0.0; 3]; positions],
+            color_encoding: Some(encoding),
+            ..PointSet::default()
+        }
+    }
+
+    /// To four decimals, as floats of 32 bits, and as the float nearest to a byte: one colour.
+    #[test]
+    fn floats_that_were_bytes_are_bytes_again() {
+        let encoding = ColorEncoding::Fraction;
+        let set = set_of(1, encoding);
+        for byte in 0..=255u8 {
+            let exact = ColorEncoding::Srgb8.decode(byte.into());
+            let part = f64::from(byte) / 255.0;
+            for stored in [part, f64::from(part as f32), (part * 1e4).round() / 1e4] {
+                let colors = [[encoding.decode(stored); 3]];
+                assert_eq!(own_colors(&set, &colors), [[exact; 3]], "{byte}, {stored}");
+            }
+        }
+        // One that is between two bytes says that none were bytes.
+        let colors = [[encoding.decode(0.7843); 3], [encoding.decode(0.7863); 3]];
+        assert_eq!(own_colors(&set, &colors), colors);
+        // Whole numbers are what they are.
+        let colors = [[ColorEncoding::Srgb16.decode(51_401.0); 3]];
+        assert_eq!(own_colors(&set_of(1, ColorEncoding::Srgb16), &colors), colors);
+    }
+
+    #[test]
+    fn a_color_that_is_no_number_is_as_if_there_were_none() {
+        for encoding in [ColorEncoding::Fraction, ColorEncoding::Srgb8] {
+            let byte = ColorEncoding::Srgb8.decode(40.0);
+            let colors = [[byte; 3], [byte, f32::NAN, byte]];
+            assert_eq!(own_colors(&set_of(2, encoding), &colors), [[byte; 3], [-0.8, 0.8, 0.8]]);
         }
     }
 

@@ -106,10 +106,23 @@ pub enum PlanError {
     },
     /// An attribute without one finite value.
     #[error(
-        "object '{name}': material.albedo is \"attribute:{attribute}\" but none of its values in {file} is \
-         finite; take another attribute or give value_range"
+        "object '{name}': material.albedo is \"attribute:{attribute}\" but none of its values in {file} is a \
+         finite number; take another attribute"
     )]
     NoValues {
+        /// The object.
+        name: String,
+        /// What was asked for.
+        attribute: String,
+        /// Its point file.
+        file: String,
+    },
+    /// A volume of which no point can be shown.
+    #[error(
+        "object '{name}': its volume shows the attribute '{attribute}' but no point in {file} has a finite value \
+         of it, or of what else its kernel takes; take another attribute"
+    )]
+    NoScalars {
         /// The object.
         name: String,
         /// What was asked for.

@@ -16,6 +16,7 @@ mod filter;
 mod images;
 mod inside;
 mod isolated;
+mod missing;
 mod needs;
 mod neighborhoods;
 mod objects;
@@ -30,6 +31,7 @@ pub use diagnostic::Diagnostic;
 pub use discs::{MAX_DISC_PAIRS, screen_tiles};
 pub use error::PlanError;
 pub use images::{Cleaned, SceneImages};
+pub use missing::{Lacking, Missing};
 pub use needs::{columns as point_columns, filter as point_filter, read_options};
 pub use picture::{Picture, Rays};
 pub use volumes::Volumes;
@@ -134,6 +136,8 @@ pub struct Plan {
     pub isolated: Vec<u64>,
     /// The strays of each object that has any.
     pub apart: Vec<Apart>,
+    /// Points that lack what is shown of them.
+    pub missing: Vec<Missing>,
     /// Diagnostics that the film is to have, each at most once. None at first.
     pub diagnostics: Vec<Diagnostic>,
     transparent: bool,
@@ -187,7 +191,8 @@ impl Plan {
         watch.stage("sorting points", surface_sets.iter().map(|set| set.len() as u64).sum());
         let cloud = bulk.cloud(scene, &surface_sets)?;
         let coarse = precision::warnings(scene, sets, &metric, cloud.origin);
-        let volumes = volumes::plan_volumes(scene, &bulk, &cloud, watch)?;
+        let mut missing = Vec::new();
+        let volumes = volumes::plan_volumes(scene, &bulk, &cloud, (watch, &mut missing))?;
         let fits = scene
             .objects
             .iter()
@@ -195,7 +200,8 @@ impl Plan {
             .map(|(object, index)| fit_params(object, index, &cloud))
             .collect();
         let mut list = ImageList::new();
-        let (mut objects, colors) = object_infos(scene, &surface_sets, &cloud, images, &mut list)?;
+        let (mut objects, colors) =
+            object_infos(scene, &surface_sets, &cloud, images, (&mut list, &mut missing))?;
         color_isosurfaces(scene, &volumes, &mut objects);
         let channel_alpha = objects.iter().any(objects::tells_channels_apart);
         let environment = match &scene.background.environment {
@@ -259,6 +265,7 @@ impl Plan {
             apart: bulk.apart,
             projection,
             coarse,
+            missing,
             diagnostics: Vec::new(),
             transparent: scene.image.transparent,
             channel_alpha,

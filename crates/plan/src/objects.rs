@@ -1,6 +1,7 @@
 //! What kernels take of each object: parameters of its fit, its material, what its points carry.
 
 use crate::images::{ImageList, Use};
+use crate::missing::{Lacking, Missing, count_marked};
 use crate::{PlanError, SceneImages, Volumes, colors};
 use kernels::layout::{
     FIT_FULL, FIT_INCOMPLETE, FitParams, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR, NONE,
@@ -14,7 +15,8 @@ use scene::{
 use std::sync::Arc;
 
 /// Albedo of objects whose points have no colours and whose material names none.
-const DEFAULT_ALBEDO: [f32; 3] = [0.8; 3];
+pub(crate) const DEFAULT_ALBEDO: [f32; 3] = [0.8; 3];
+
 fn kind_of(polynomial: Polynomial) -> u32 {
     match polynomial {
         Polynomial::Full => FIT_FULL,
@@ -56,7 +58,7 @@ pub(crate) fn object_infos(
     sets: &[Arc<PointSet>],
     cloud: &Cloud,
     images: &SceneImages,
-    list: &mut ImageList,
+    (list, missing): (&mut ImageList, &mut Vec<Missing>),
 ) -> Result<(Vec<ObjectInfo>, Vec<f32>), PlanError> {
     let mut colors: Vec<f32> = Vec::new();
     let mut infos = Vec::new();
@@ -102,6 +104,18 @@ pub(crate) fn object_infos(
         match values {
             PointValues::None => {}
             PointValues::Colors(values) => {
+                let points = count_marked(&values);
+                if points > 0 {
+                    let what = match &object.material.albedo {
+                        Albedo::Attribute { name, .. } => Lacking::Attribute(name.clone()),
+                        _ => Lacking::Color,
+                    };
+                    let (object, of) = (object.name.clone(), values.len() as u64);
+                    missing.push(Missing { object, what, points, of });
+                }
+                // Kernels do not know the mark yet: such points are interpolated like others.
+                let values: Vec<[f32; 3]> =
+                    values.iter().map(|&[red, green, blue]| [red.abs(), green, blue]).collect();
                 colors.extend(cloud.by_slot(index, &values).iter().flatten());
             }
             PointValues::Places(values) => {
@@ -194,7 +208,7 @@ fn point_values(object: &Object, set: &PointSet) -> Result<PointValues, PlanErro
     Ok(match (&object.material.albedo, &set.colors) {
         (Albedo::Color(_), _) | (Albedo::Default, None) => PointValues::None,
         (Albedo::Default | Albedo::Points, Some(own)) => {
-            PointValues::Colors(colors::own_colors(own))
+            PointValues::Colors(colors::own_colors(set, own))
         }
         (Albedo::Points, None) => {
             return Err(PlanError::NoColors { name: name.clone(), file: file() });

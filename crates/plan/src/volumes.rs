@@ -4,6 +4,7 @@
 use crate::PlanError;
 use crate::bulk::Bulk;
 use crate::colors::{attribute_values, mapped};
+use crate::missing::{Lacking, Missing};
 use crate::neighborhoods::{length, open_points, spacing};
 use kernels::layout::{
     CELL_ABOVE, CELL_BELOW, CELL_LOOK, CELL_NOTHING, GridInfo, Polynomial, VOLUME_AVERAGE,
@@ -79,7 +80,7 @@ pub(crate) fn plan_volumes(
     scene: &Scene,
     bulk: &Bulk,
     cloud: &Cloud,
-    watch: &dyn Watch,
+    (watch, missing): (&dyn Watch, &mut Vec<Missing>),
 ) -> Result<Volumes, PlanError> {
     let origin = cloud.origin;
     let mut volumes = Volumes { step: f32::MAX, ..Volumes::default() };
@@ -94,6 +95,26 @@ pub(crate) fn plan_volumes(
             }
             _ => scalars.iter().map(|&scalar| Particle { length: f64::INFINITY, scalar }).collect(),
         };
+        let counts = |of: &Particle| {
+            let inverse_length = (1.0 / of.length) as f32;
+            (of.scalar as f32).is_finite() && of.length > 0.0 && inverse_length.is_finite()
+        };
+        let lacking = particles.iter().filter(|of| !counts(of)).count();
+        if lacking == particles.len() && lacking > 0 {
+            return Err(PlanError::NoScalars {
+                name: object.name.clone(),
+                attribute: volume.scalar.clone(),
+                file: object.points.display().to_string(),
+            });
+        }
+        if lacking > 0 {
+            missing.push(Missing {
+                object: object.name.clone(),
+                what: Lacking::Scalar(volume.scalar.clone()),
+                points: lacking as u64,
+                of: particles.len() as u64,
+            });
+        }
         let radius = match (&volume.kernel, volume.radius) {
             (VolumeKernel::Sph { .. }, _) => {
                 2.0 * particles
@@ -103,7 +124,12 @@ pub(crate) fn plan_volumes(
                     .fold(0.0, f64::max)
             }
             (_, Some(radius)) => radius,
-            (_, None) => spacing(&bulk.world[index], watch)?,
+            (_, None) if lacking == 0 => spacing(&bulk.world[index], watch)?,
+            (_, None) => {
+                let both = positions.iter().zip(&particles);
+                let there = both.filter(|(_, of)| counts(of)).map(|(&p, _)| p);
+                spacing(&there.collect::<Vec<_>>(), watch)?
+            }
         };
         watch.stage("sorting the points of a volume", positions.len() as u64);
         // Points that all lie in one place have no spacing, and any reach shows them alike.
@@ -111,13 +137,12 @@ pub(crate) fn plan_volumes(
         let points: Vec<(VolumePoint, f32)> = positions
             .iter()
             .zip(&particles)
-            .filter(|(_, of)| (of.scalar as f32).is_finite() && of.length > 0.0)
+            .filter(|(_, of)| counts(of))
             .map(|(p, of)| {
                 let position = [0, 1, 2].map(|axis| (p[axis] - origin[axis]) as f32);
                 let inverse_length = (1.0 / of.length) as f32;
                 (VolumePoint { position, scalar: of.scalar as f32 }, inverse_length)
             })
-            .filter(|(_, inverse_length)| inverse_length.is_finite())
             .collect();
         let stops =
             volume.transfer.as_ref().map_or(vec![NO_STOP], |transfer| stops_of(transfer, &scalars));

@@ -4,7 +4,8 @@ use crate::error::PointsError;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
-use crate::{e57, esri, las, npy, obj, off, pcd, ply, ptx, text, units, vtk};
+use crate::upright::Upwards;
+use crate::{e57, esri, las, npy, obj, off, pcd, ply, ptx, text, vtk};
 use std::path::Path;
 
 /// A format that points are read from.
@@ -91,26 +92,15 @@ pub(crate) static FORMATS: &[Format] = &[
     },
 ];
 
-/// Which way is up in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Upwards {
-    /// +y, as in most models.
-    Y,
-    /// +z, as in surveys.
-    Z,
-    /// -y, as in what a depth camera sees.
-    MinusY,
-}
-
 impl Format {
-    /// Which way is up in files of this format that begin so, as a rule.
-    pub(crate) fn usual_up(&self, start: &[u8]) -> Upwards {
+    /// Which way is up in files of this format, and why, where that is not +y.
+    pub(crate) fn up(&self, path: &Path) -> Option<(Upwards, &'static str)> {
+        let is_pts = || path.extension().is_some_and(|e| e.eq_ignore_ascii_case("pts"));
         match self.name {
-            "LAS" | "E57" | "PTX" | "ESRI grid" => Upwards::Z,
-            "PCD" if pcd::is_organised(start) => Upwards::MinusY,
-            // East, north and up, once projected.
-            "PLY" | "PCD" | "NPY" | "text" if units::header_in_degrees(start) => Upwards::Z,
-            _ => Upwards::Y,
+            "LAS" | "E57" | "PTX" => Some((Upwards::Z, "as in surveys")),
+            "text" if is_pts() => Some((Upwards::Z, "as around a scanner")),
+            "ESRI grid" => Some((Upwards::Z, "as on maps")),
+            _ => None,
         }
     }
 }

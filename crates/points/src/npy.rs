@@ -20,6 +20,7 @@ use crate::npy::header::{Header, MAGIC};
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
+use crate::upright;
 use std::cell::RefCell;
 use std::io::{self, Read};
 use std::path::Path;
@@ -137,6 +138,13 @@ pub(crate) fn read(
     };
     let mut set = collector.finish(&format!("NPY, shape {shape}, {taken}"))?;
     set.notes.extend(note);
+    // Of a map, points come row after row, or column after column.
+    if let ([rows, columns, width], false) = (&*header.shape, header.record.has_names)
+        && MAP_COLUMNS.contains(width)
+    {
+        let (columns, rows) = (*columns, *rows);
+        set.up = upright::of_map(&set, [columns, rows], header.fortran);
+    }
     Ok(set)
 }
 

@@ -15,6 +15,7 @@ use crate::options::ReadOptions;
 use crate::pcd::header::{Data, Header};
 use crate::set::PointSet;
 use crate::source::{Line, Source};
+use crate::upright::{self, Upwards};
 use std::path::Path;
 
 /// Longest line of a text file.
@@ -25,13 +26,6 @@ const EXPORT: &str = "the file is damaged: copy or export it again";
 /// PCD begins with comments, or with VERSION where somebody took them away.
 pub(crate) fn sniff(start: &[u8]) -> bool {
     start.starts_with(b"# .PCD") || start.starts_with(b"VERSION ") || start.starts_with(b"# .pcd")
-}
-
-/// Whether a file that begins so has its points in rows and columns, like a picture.
-pub(crate) fn is_organised(start: &[u8]) -> bool {
-    let height = start.split(|&byte| byte == b'\n').find_map(|line| line.strip_prefix(b"HEIGHT "));
-    let rows = height.and_then(|rows| std::str::from_utf8(rows).ok()?.trim().parse::<u64>().ok());
-    rows.is_some_and(|rows| rows > 1)
 }
 
 pub(crate) fn read(
@@ -48,7 +42,15 @@ pub(crate) fn read(
         Data::Compressed => compressed(&mut source, &header, path, &mut collector)?,
     }
     let organised = if header.rows > 1 { ", organised" } else { "" };
-    collector.finish(&format!("PCD {}, {}{organised}", header.version, header.data.in_words()))
+    let words = header.data.in_words();
+    let mut set = collector.finish(&format!("PCD {}, {words}{organised}", header.version))?;
+    if header.rows > 1 {
+        // Cameras wrote the first of them.
+        let camera = (Upwards::MinusY, "as organised files of depth cameras have it");
+        set.up = upright::of_map(&set, [header.points / header.rows, header.rows], false)
+            .or(Some(camera));
+    }
+    Ok(set)
 }
 
 /// One number of a record.

@@ -22,6 +22,7 @@ use crate::ply::header::{Element, Encoding, Header, Kind, Property, type_name};
 use crate::ply::splat::Gaussians;
 use crate::set::PointSet;
 use crate::source::{Line, Source};
+use crate::upright::Upwards;
 use std::path::Path;
 
 /// Longest line of a text file. Only lists come near it.
@@ -78,7 +79,10 @@ pub(crate) fn read(
         gaussians.fill(vertex, &mut row);
         collector.push(&row)
     })?;
-    collector.finish(&format!("{}, 3D Gaussians", header.encoding.in_words()))
+    let mut set = collector.finish(&format!("{}, 3D Gaussians", header.encoding.in_words()))?;
+    set.up =
+        Some((Upwards::MinusY, "as 3D Gaussians have it, which are made from cameras' pictures"));
+    Ok(set)
 }
 
 fn no_vertices(header: &Header, path: &Path) -> PointsError {

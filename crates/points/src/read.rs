@@ -1,13 +1,13 @@
 //! Opens point files, and finds out what they are.
 
 use crate::error::PointsError;
-use crate::format::{self, Upwards};
+use crate::format;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
 use crate::{foreign, gzip};
 use std::fs::File;
-use std::io::{Cursor, Read};
+use std::io::Cursor;
 use std::path::Path;
 
 /// How much of a file tells its format.
@@ -47,25 +47,6 @@ pub fn read_with(
         false => Source::of_stream(file, progress),
     };
     read_source(source, path, options)
-}
-
-/// Which way is up in a file, as a rule for its format: z in surveys (LAS, LAZ, E57), -y in organised
-/// PCD files, which depth cameras write, z where columns are named longitude and latitude, else y. So it is too where the file cannot be read.
-pub fn usual_up(path: &Path) -> Upwards {
-    let mut start = Vec::new();
-    // A pipe that is opened and left is closed to its writer.
-    let is_file = path.metadata().is_ok_and(|metadata| metadata.is_file());
-    let opened = is_file.then(|| File::open(path).ok()).flatten();
-    let read = opened.map(|file| file.take(START as u64).read_to_end(&mut start));
-    let mut name = path.to_owned();
-    if gzip::sniff(&start) {
-        start = gzip::unpacked_start(&start, START);
-        name = gzip::inner_name(path);
-    }
-    match (read, format::of(&start, &name)) {
-        (Some(Ok(1..)), Some(format)) => format.usual_up(&start),
-        _ => Upwards::Y,
-    }
 }
 
 /// As [`read_with`], of bytes in memory. `name` stands in messages, and its extension tells the format where
@@ -176,7 +157,11 @@ fn read_contents(
         return Err(foreign.error(path));
     }
     match format::of(start, name) {
-        Some(format) => (format.read)(source, path, options),
+        Some(format) => {
+            let mut set = (format.read)(source, path, options)?;
+            set.up = set.up.or_else(|| format.up(name));
+            Ok(set)
+        }
         None => Err(foreign::unknown(start, name, path)),
     }
 }

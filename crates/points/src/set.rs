@@ -3,6 +3,7 @@
 use crate::field::Type;
 use crate::names;
 use crate::units::Units;
+use crate::upright::Upwards;
 use std::collections::TryReserveError;
 
 /// Positions and attributes of one point file, in the file's own coordinates.
@@ -35,6 +36,9 @@ pub struct PointSet {
     pub filtered_out: u64,
     /// The file format in words, such as `PLY 1.0, binary little-endian`.
     pub format: String,
+    /// Which way is up, and why, in a few words that follow "z is up,"; `None` where nothing says that it
+    /// is not +y.
+    pub up: Option<(Upwards, &'static str)>,
     /// What the reader assumed where the file leaves it open, and what it left out, one sentence each,
     /// without the file's name: `taken for x y z red green blue, since …; --columns says otherwise`.
     pub notes: Vec<String>,
@@ -155,6 +159,7 @@ impl PointSet {
             invalid: self.invalid,
             filtered_out: self.filtered_out,
             format: self.format.clone(),
+            up: self.up,
             notes: self.notes.clone(),
             units: self.units.clone(),
             single_positions: self.single_positions,

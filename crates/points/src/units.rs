@@ -78,15 +78,6 @@ pub(crate) fn is_latitude(name: &str) -> bool {
     is_angle(name, &["latitude", "latitudes", "lat"], "latitude")
 }
 
-/// Whether a file of named columns that begins so names longitude and latitude, but no x.
-pub(crate) fn header_in_degrees(start: &[u8]) -> bool {
-    let text = String::from_utf8_lossy(start);
-    let words = || text.split(|sign: char| !(sign.is_alphanumeric() || sign == '_'));
-    words().any(is_longitude)
-        && words().any(is_latitude)
-        && !words().any(|word| word.eq_ignore_ascii_case("x"))
-}
-
 /// Whether one word of the name is one of these, such as in `LONGITUDE_CENTROID`, `lon_deg` and
 /// `decimalLongitude`.
 fn is_angle(name: &str, words: &[&str], long: &str) -> bool {

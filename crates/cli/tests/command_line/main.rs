@@ -14,6 +14,7 @@ mod filters;
 mod headers;
 mod inputs;
 mod inspect;
+mod points;
 mod render;
 mod signals;
 mod twins;

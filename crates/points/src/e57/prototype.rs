@@ -154,6 +154,7 @@ impl Layout {
             let full = if kind == Type::U8 { 255.0 } else { 65535.0 };
             let color = places.color.filter(|_| valid(2));
             row.extend([0, 1, 2].map(|channel| match color {
+                _ if kind.is_float() => color.map_or(f64::NAN, |places| values[places[channel]]),
                 None => (NO_COLOR / 255.0 * full).round(),
                 Some(places) => {
                     let [low, span] = self.scans[index].color_spans[channel];
@@ -194,8 +195,18 @@ fn held(scans: &[Scan], name: &str) -> Type {
     }
 }
 
-/// 8 bits where all scans have integers of 0 to 255 at most, else 16.
+/// 8 bits where all scans have integers of 0 to 255 at most, floats where no scan says what is full
+/// intensity, else 16 bits.
 fn color_type(scans: &[Scan]) -> Type {
+    let has_limits = |scan: &Scan| {
+        COLOR.iter().zip(&scan.color_limits).any(|(name, limits)| {
+            scan.find(name)
+                .is_some_and(|place| limits.or(scan.columns[place].codec.limits()).is_some())
+        })
+    };
+    if !scans.iter().any(has_limits) {
+        return Type::F32;
+    }
     let is_byte = |scan: &Scan| {
         COLOR.iter().enumerate().all(|(channel, name)| match scan.find(name) {
             None => true,

@@ -164,6 +164,31 @@ fn scans_are_put_where_their_poses_say() {
     assert!(intensity[0].is_nan() && intensity[2] == 9.0);
 }
 
+/// Full intensity is 1 or 255 where floats come without limits; the crate always writes some.
+#[test]
+fn floats_without_limits_are_colors_of_either_kind() {
+    for (stored, encoding) in [
+        ([200.0, 40.0, 20.0], ColorEncoding::Srgb8),
+        ([200.0 / 255.0, 40.0 / 255.0, 20.0 / 255.0], ColorEncoding::Fraction),
+    ] {
+        let mut scan = plain(1);
+        let colors = [RecordName::ColorRed, RecordName::ColorGreen, RecordName::ColorBlue];
+        scan.prototype.extend(colors.map(|name| record(name, RecordDataType::F32)));
+        scan.points[0].extend(stored.map(Single));
+        let bytes = file_with(&[scan], |text| {
+            let begin = text.find("<colorLimits").expect("limits");
+            let end = text.find("</colorLimits>").expect("limits") + "</colorLimits>".len();
+            text[..begin].to_owned() + &text[end..]
+        });
+        let set = read(&bytes).unwrap();
+        assert_eq!(set.color_encoding, Some(encoding));
+        let expected = [200.0, 40.0, 20.0].map(|byte| ColorEncoding::Srgb8.decode(byte));
+        for (found, expected) in set.colors.unwrap()[0].into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-6, "{found}, not {expected}");
+        }
+    }
+}
+
 #[test]
 fn spherical_coordinates_become_cartesian_and_invalid_points_go() {
     let right = std::f64::consts::FRAC_PI_2;
