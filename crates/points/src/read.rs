@@ -7,7 +7,7 @@ use crate::set::PointSet;
 use crate::source::Source;
 use crate::{foreign, gzip};
 use std::fs::File;
-use std::io::Cursor;
+use std::io::{Cursor, Read};
 use std::path::Path;
 
 /// How much of a file tells its format.
