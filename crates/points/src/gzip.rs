@@ -27,22 +27,6 @@ pub(crate) fn inner_name(path: &Path) -> PathBuf {
     if is_gz { path.with_extension("") } else { path.into() }
 }
 
-/// What `start` unpacks to, as far as it goes and at most `most` bytes.
-pub(crate) fn unpacked_start(start: &[u8], most: usize) -> Vec<u8> {
-    let mut unpacked = vec![0; most];
-    let mut decoder = MultiGzDecoder::new(start);
-    let mut filled = 0;
-    // The start of a packed file is cut off somewhere.
-    while let Some(free) = unpacked.get_mut(filled..).filter(|free| !free.is_empty()) {
-        match decoder.read(free) {
-            Ok(count @ 1..) => filled += count,
-            _ => break,
-        }
-    }
-    unpacked.truncate(filled);
-    unpacked
-}
-
 /// What is packed in a file, from its beginning.
 pub(crate) fn unpacked(source: Source<'_>) -> Source<'_> {
     source.through(|packed, read, length| {

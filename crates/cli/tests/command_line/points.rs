@@ -92,7 +92,7 @@ fn values_that_are_none_are_counted() {
         [albedo, volume, "objects.0.material={ albedo = 'attribute:temp', value_range = [0, 1] }"]
     {
         render(&folder, &["none.csv", "-o", "a.png", "--set", value])
-            .fails_with(2, &["none.csv", "'temp'", "take another attribute"]);
+            .fails_with(2, &["none.csv", "temp", "take another attribute"]);
     }
 }
 
