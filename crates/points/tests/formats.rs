@@ -66,7 +66,7 @@ fn an_esri_grid_is_a_terrain() {
     let set = read(&path).unwrap();
     assert_eq!(set.len() as u64 + set.invalid, 60 * 40);
     assert_eq!(set.positions[0], [500_005.0, 4_600_395.0, 110.0]);
-    assert_eq!(points::usual_up(&path), points::Upwards::Z);
+    assert_eq!(set.up.map(|(up, _)| up), Some(points::Upwards::Z));
     let (min, max) = set.bounds().unwrap();
     assert_eq!((min[0], min[1], max[0]), (500_005.0, 4_600_005.0, 500_595.0));
 }
