@@ -41,7 +41,7 @@ fn strays_change_no_pixel() {
     ] {
         let plan = plan_of(SCENE, &[with(&sphere, &strays)]);
         assert_eq!(plan.apart.len(), 1, "{name}");
-        assert_eq!(plan.apart[0].count, strays.len() as u64, "{name}");
+        assert_eq!(plan.apart[0].1.count, strays.len() as u64, "{name}");
         assert_eq!(plan.cloud.origin, clean.cloud.origin, "{name}");
         assert_same_film(name, &render_twin(&plan).film, &expected);
     }
@@ -131,7 +131,7 @@ fn volumes_keep_strays_that_lie_near() {
     let sphere = fibonacci_sphere(3000);
     let set = with_attribute(with(&sphere, &[[2.5, 0.0, 0.0], [2000.0, 0.0, 0.0]]), "s", |_| 1.0);
     let plan = plan_of(&fog(""), &[set]);
-    assert_eq!(plan.apart[0].count, 2);
+    assert_eq!(plan.apart[0].1.count, 2);
     assert_eq!(plan.volumes.points.len(), 3001);
     let clean = plan_of(&fog(""), &[with_attribute(set_of(sphere), "s", |_| 1.0)]);
     assert_eq!(

@@ -294,8 +294,8 @@ impl Input {
         for warning in &plan.coarse {
             progress.note(&format!("warning: {warning}"));
         }
-        for apart in &plan.apart {
-            let file = self.scene.objects[apart.object].points.display();
+        for (object, apart) in &plan.apart {
+            let file = self.scene.objects[*object].points.display();
             progress.note(&format!("warning: {file}: {apart}"));
         }
         for missing in &plan.missing {

@@ -2,61 +2,15 @@
 
 use crate::{PlanError, isolated};
 use points::{
-    Cloud, CloudError, ObjectPoints, PointSet, Strays, Watch, bounds_of, origin_of, rough_origin,
+    Apart, Cloud, CloudError, ObjectPoints, PointSet, Strays, Watch, bounds_of, origin_of,
+    rough_origin,
 };
 use rayon::prelude::*;
 use scene::{Object, Scene};
-use std::fmt;
 use std::sync::Arc;
 
 /// Positions in the world of the points of an object.
 pub(crate) type World = Arc<Vec<[f64; 3]>>;
-
-/// The strays of an object, in words that a message needs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Apart {
-    /// Index of the object.
-    pub object: usize,
-    /// How many there are.
-    pub count: u64,
-    /// Of how many points.
-    pub of: u64,
-    /// How far the farthest lies from the box around all others, in scene units; 0 where none lies outside.
-    pub farthest: f64,
-    /// The longest side of that box.
-    pub size: f64,
-    /// The option of the command line that leaves out those that lie outside it, if any do.
-    pub filter: Option<String>,
-}
-
-impl fmt::Display for Apart {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { count, of, farthest, size, filter, .. } = self;
-        let (lie, they, show, count_not) = match count {
-            1 => ("lies", "it", "shows", "does"),
-            _ => ("lie", "they", "show", "do"),
-        };
-        write!(f, "{count} of {of} points {lie} far from all others")?;
-        if *farthest > 0.0 {
-            let [farthest, size] = [short(*farthest), short(*size)];
-            write!(f, ", up to {farthest} outside the rest, which is {size} wide")?;
-        }
-        write!(f, "; {they} {show} no surface and {count_not} not count for the view")?;
-        match filter {
-            Some(filter) => write!(f, "; {filter} leaves out what lies outside"),
-            None => Ok(()),
-        }
-    }
-}
-
-/// A length to three digits, without an exponent where it needs none.
-fn short(length: f64) -> String {
-    let exponent = length.abs().log10().floor();
-    match (-4.0..=6.0).contains(&exponent) {
-        true => format!("{length:.*}", (2.0 - exponent).max(0.0) as usize),
-        false => format!("{length:.2e}"),
-    }
-}
 
 /// The points of all objects without strays, and without those that `drop_isolated` drops.
 pub(crate) struct Bulk {
@@ -65,7 +19,7 @@ pub(crate) struct Bulk {
     /// What volumes are made of: strays as well where they lie no farther than the bulk's diagonal from its box. A
     /// droplet counts; a grid of cells over empty space is of no use.
     pub particles: Vec<(Arc<PointSet>, World)>,
-    pub apart: Vec<Apart>,
+    pub apart: Vec<(usize, Apart)>,
     /// How many isolated points each object lost.
     pub isolated: Vec<u64>,
     /// Points of all objects, strays included.
@@ -136,17 +90,11 @@ impl Bulk {
             self.orders.push(Some(strays.order));
             return;
         }
+        let index = self.sets.len();
+        self.apart.push((index, strays.apart(index, &file.positions)));
         let [low, high] = strays.bulk;
         let sides = [0, 1, 2].map(|axis| high[axis] - low[axis]);
         let diagonal = sides.iter().map(|side| side * side).sum::<f64>().sqrt();
-        self.apart.push(Apart {
-            object: self.sets.len(),
-            count: strays.places.len() as u64,
-            of: world.len() as u64,
-            farthest: strays.farthest,
-            size: sides.into_iter().fold(0.0, f64::max),
-            filter: strays.filter(self.sets.len(), &file.positions),
-        });
         let without = |places: &[u32]| {
             let mut keep = vec![true; world.len()];
             places.iter().for_each(|&place| keep[place as usize] = false);
@@ -222,40 +170,4 @@ fn kept(set: &PointSet, world: &World, keep: &[bool]) -> (Arc<PointSet>, World) 
 fn placed(object: &Object, set: &PointSet) -> Vec<[f64; 3]> {
     let positions = set.positions.par_iter().with_min_len(1 << 14);
     positions.map(|&p| object.transform.apply(p)).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lengths_are_short() {
-        let of = [6.905_1, 590.14, 4.627e6, 1e30, 0.004_29, 2.0, 1e-9, 123_456.0].map(short);
-        assert_eq!(
-            of,
-            ["6.90", "590", "4627000", "1.00e30", "0.00429", "2.00", "1.00e-9", "123456"]
-        );
-    }
-
-    #[test]
-    fn the_line_says_how_many_lie_how_far_off() {
-        let one = Apart {
-            object: 0,
-            count: 1,
-            of: 501,
-            farthest: 590.1,
-            size: 2.0,
-            filter: Some("F".into()),
-        };
-        assert_eq!(
-            one.to_string(),
-            "1 of 501 points lies far from all others, up to 590 outside the rest, which is 2.00 wide; it shows \
-             no surface and does not count for the view; F leaves out what lies outside"
-        );
-        let inside = Apart { count: 3, farthest: 0.0, filter: None, ..one };
-        assert_eq!(
-            inside.to_string(),
-            "3 of 501 points lie far from all others; they show no surface and do not count for the view"
-        );
-    }
 }

@@ -24,7 +24,6 @@ mod picture;
 mod precision;
 mod volumes;
 
-pub use bulk::Apart;
 pub use camera::View;
 pub use degrees::{MapProjection, in_degrees};
 pub use diagnostic::Diagnostic;
@@ -47,7 +46,7 @@ use kernels::layout::{
     TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
 };
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
-use points::{Cloud, PointSet, Unwatched, Watch};
+use points::{Apart, Cloud, PointSet, Unwatched, Watch};
 use scene::{Fresnel, Light, Scene, Up};
 pub use scene::{Primary, RayLoop, Secondary};
 use std::sync::Arc;
@@ -134,8 +133,8 @@ pub struct Plan {
     pub coarse: Vec<String>,
     /// How many isolated points each object lost (`drop_isolated`).
     pub isolated: Vec<u64>,
-    /// The strays of each object that has any.
-    pub apart: Vec<Apart>,
+    /// The strays of each object that has any, by its index.
+    pub apart: Vec<(usize, Apart)>,
     /// Points that lack what is shown of them.
     pub missing: Vec<Missing>,
     /// Diagnostics that the film is to have, each at most once. None at first.

@@ -118,7 +118,12 @@ impl Distinct {
     /// order of their hashes, which is without any order in space, so that a part of it is a sample too.
     pub(crate) fn sample(mut self) -> Vec<[f64; 3]> {
         self.sample.sort_unstable_by_key(|&(hash, _)| hash);
-        self.sample.into_iter().map(|(_, position)| position).collect()
+        self.positions()
+    }
+
+    /// The positions of the sample as they came.
+    pub(crate) fn positions(&self) -> Vec<[f64; 3]> {
+        self.sample.iter().map(|&(_, position)| position).collect()
     }
 }
 

@@ -64,7 +64,7 @@ pub use precision::{Coarse, coarse, coarse_rounding, single_axes, single_step};
 pub use read::{read, read_bytes, read_with};
 pub use rims::Rims;
 pub use set::{Attribute, ColorEncoding, PointSet, Values};
-pub use strays::{Strays, rough_origin};
+pub use strays::{Apart, Strays, rough_origin};
 pub use stream::Outlet;
 pub use summary::{Dropped, Histogram, PointSummary, Range, summarize};
 pub use units::Units;

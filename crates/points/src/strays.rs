@@ -16,6 +16,11 @@
 //! Points at equal positions count once here. The factors are from forty real and simulated sets: none of the models,
 //! grids and terrains has a stray, the airborne scan 3 of 110 000, the terrestrial scan 65 of 518 862.
 
+mod apart;
+
+pub use apart::Apart;
+pub(crate) use apart::{filter, size_of};
+
 use crate::cloud::{bounds_of, middle};
 use crate::curve::{is_copy, sort_along_curve};
 use kernels::layout::Point;
@@ -51,6 +56,8 @@ pub struct Strays {
     pub bulk: [[f64; 3]; 2],
     /// How far the farthest stray lies from that box; 0 where none lies outside.
     pub farthest: f64,
+    /// The median distance of a point to its 16th nearest other; 0 where there are too few points for strays.
+    pub reach: f64,
     /// All places along a Hilbert curve, for [`ObjectPoints::order`](crate::ObjectPoints::order).
     pub order: Vec<u32>,
 }
@@ -81,7 +88,7 @@ impl Strays {
             order.par_iter().with_min_len(PART).map(position).collect();
         // Of points at one position, the first.
         on_curve.dedup_by(|b, a| is_copy(*a, *b));
-        let stray = stray_places(&on_curve);
+        let (stray, reach) = stray_places(&on_curve);
         let mut places = Vec::new();
         if !stray.is_empty() {
             let found: Vec<[f32; 3]> = stray.iter().map(|&at| on_curve[at as usize]).collect();
@@ -90,7 +97,7 @@ impl Strays {
             places = (0..local.len() as u32).filter(|place| is_stray(position(place))).collect();
         }
         let bulk = bulk_of(positions, &places);
-        let mut strays = Self { places, bulk, farthest: 0.0, order };
+        let mut strays = Self { places, bulk, farthest: 0.0, reach, order };
         let distances = strays.places.iter().map(|&at| strays.distance(&positions[at as usize]));
         strays.farthest = distances.fold(0.0, f64::max);
         strays
@@ -105,36 +112,17 @@ impl Strays {
         away(0).hypot(away(1)).hypot(away(2))
     }
 
-    /// The option of the command line that leaves out what lies outside the bulk's box, given the positions as the
-    /// file has them; `None` where no stray does.
+    /// The strays of an object, in words. `in_file` are its positions as its file has them.
     #[must_use]
-    pub fn filter(&self, object: usize, in_file: &[[f64; 3]]) -> Option<String> {
-        if self.farthest == 0.0 {
-            return None;
+    pub fn apart(&self, object: usize, in_file: &[[f64; 3]]) -> Apart {
+        Apart {
+            count: self.places.len() as u64,
+            is_counted: true,
+            of: in_file.len() as u64,
+            farthest: self.farthest,
+            size: size_of(self.bulk),
+            filter: (self.farthest > 0.0).then(|| filter(object, bulk_of(in_file, &self.places))),
         }
-        // Outwards to three digits of the size, so that the numbers are short.
-        let [low, high] = bulk_of(in_file, &self.places);
-        let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-        // Of degrees beside metres, each axis has a size of its own.
-        let size_of = |axis: usize| match high[axis] - low[axis] {
-            own if own > 0.0 && own < 1e-2 * size => own,
-            _ => size,
-        };
-        let corner = |corner: [f64; 3], round: fn(f64) -> f64| {
-            let rounded = [0, 1, 2].map(|axis| {
-                let size = size_of(axis);
-                let step =
-                    if size > 0.0 { 10f64.powf(size.log10().floor() - 2.0) } else { f64::EPSILON };
-                let digits = (-step.log10().round()).clamp(0.0, 300.0) as usize;
-                format!("{:.digits$}", round(corner[axis] / step) * step)
-            });
-            rounded.join(", ")
-        };
-        Some(format!(
-            "--set 'objects.{object}.filter.box={{ min = [{}], max = [{}] }}'",
-            corner(low, f64::floor),
-            corner(high, f64::ceil)
-        ))
     }
 }
 
@@ -172,11 +160,11 @@ fn bulk_of(positions: &[[f64; 3]], left_out: &[u32]) -> [[f64; 3]; 2] {
     bounds_of(runs).unwrap_or_default()
 }
 
-/// Which of some distinct positions along a curve are stray, ascending.
-fn stray_places(points: &[[f32; 3]]) -> Vec<u32> {
+/// Which of some distinct positions along a curve are stray, ascending, and the median of r.
+fn stray_places(points: &[[f32; 3]]) -> (Vec<u32>, f64) {
     let count = points.len();
     if count < FEWEST {
-        return Vec::new();
+        return (Vec::new(), 0.0);
     }
     let tree = Boxes::new(points);
     let mut gone = Gone { flags: vec![false; count], count: 0 };
@@ -227,11 +215,11 @@ fn stray_places(points: &[[f32; 3]]) -> Vec<u32> {
         }
         gone.count += found.len();
         if gone.count > count / MOST || count - gone.count < FEWEST {
-            return Vec::new();
+            return (Vec::new(), median);
         }
         left.retain(|&at| !gone.flags[at as usize]);
     }
-    (0..count as u32).filter(|&at| gone.flags[at as usize]).collect()
+    ((0..count as u32).filter(|&at| gone.flags[at as usize]).collect(), median)
 }
 
 /// Points that are left out of a search.
@@ -500,13 +488,13 @@ mod tests {
     fn the_filter_keeps_the_bulk_and_is_short() {
         let mut points = sphere(2000);
         points.push([9.0, 0.0, 0.0]);
-        let filter = strays(&points).filter(2, &points);
+        let apart = strays(&points).apart(2, &points);
         assert_eq!(
-            filter.expect("one lies outside"),
+            apart.filter.expect("one lies outside"),
             "--set 'objects.2.filter.box={ min = [-1.00, -1.00, -1.00], max = [1.00, 1.00, 1.00] }'"
         );
         points.pop();
         points.push([0.0; 3]);
-        assert_eq!(strays(&points).filter(0, &points), None);
+        assert_eq!(strays(&points).apart(0, &points).filter, None);
     }
 }

@@ -1,5 +1,6 @@
 //! What `pointillist info` tells about a point file.
 
+mod bulk;
 mod columns;
 mod histogram;
 mod passes;
@@ -7,6 +8,8 @@ mod passes;
 pub use histogram::{Histogram, Range};
 pub use passes::summarize;
 
+use crate::cloud::origin_of;
+use crate::strays::Apart;
 use crate::units::Units;
 use serde_json::{Map, Value, json};
 use std::fmt;
@@ -26,6 +29,10 @@ pub struct PointSummary {
     pub min: [f64; 3],
     /// Largest coordinate along each axis.
     pub max: [f64; 3],
+    /// The box around all points but strays, by its lowest and highest corner: what a render frames.
+    pub bulk: [[f64; 3]; 2],
+    /// The strays, if there are any.
+    pub apart: Option<Apart>,
     /// Name and range of everything else a point has: normals as `nx`, `ny`, `nz`, colours as
     /// `red`, `green`, `blue` in the file's units, then the attributes in the order of the file.
     pub attributes: Vec<(String, Range, Histogram)>,
@@ -61,10 +68,10 @@ impl Dropped {
 }
 
 impl PointSummary {
-    /// The middle of the box, which a render of these points alone subtracts from them before it goes
+    /// The middle of the bulk's box, which a render of only these points subtracts from them before it goes
     /// on in 32 bits.
     pub fn origin(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis| 0.5 * self.min[axis] + 0.5 * self.max[axis])
+        origin_of(self.bulk)
     }
 
     /// The summary as `pointillist info --json` prints it. What JSON has no number for is `null`.
@@ -91,6 +98,12 @@ impl PointSummary {
             "filtered_out": self.filtered_out,
             "dropped": { "count": self.dropped.count(), "reasons": reasons },
             "bounds": { "min": self.min, "max": self.max },
+            "bulk": { "min": self.bulk[0], "max": self.bulk[1] },
+            "strays": self.apart.as_ref().map(|apart| json!({
+                "count": apart.count,
+                "counted": apart.is_counted,
+                "farthest": apart.farthest,
+            })),
             "origin": self.origin(),
             "attributes": attributes,
             "coincident": self.coincident,
@@ -135,6 +148,10 @@ impl fmt::Display for PointSummary {
         }
         writeln!(f, "min      {}", corner(self.min))?;
         writeln!(f, "max      {}", corner(self.max))?;
+        if let Some(apart) = &self.apart {
+            writeln!(f, "bulk     {} to {}", corner(self.bulk[0]), corner(self.bulk[1]))?;
+            writeln!(f, "strays   {apart}")?;
+        }
         writeln!(f, "origin   {} (subtracted by a render)", corner(self.origin()))?;
         match (self.spacing, self.spacing_sample) {
             (None, _) => write!(f, "spacing  none (a single position)")?,
@@ -205,6 +222,8 @@ mod tests {
             "filtered_out": 0,
             "dropped": { "count": 1, "reasons": { "non-finite position": 1 } },
             "bounds": { "min": [0.5, -2.0, 0.1], "max": [1.0, 4.0, 636_001.76] },
+            "bulk": { "min": [0.5, -2.0, 0.1], "max": [1.0, 4.0, 636_001.76] },
+            "strays": null,
             "origin": [0.75, 1.0, 318_000.93],
             "coincident": 0,
             "coincident_counted": true,

@@ -4,6 +4,7 @@
 //! counts of [`Columns`]: some 150 MB, whatever the number of points. A file whose points take less than
 //! [`HELD_BYTES`] is read once and held.
 
+use super::bulk::Bulk;
 use super::columns::{Colors, Columns};
 use super::{Dropped, PointSummary};
 use crate::distinct::Distinct;
@@ -50,6 +51,9 @@ pub fn summarize(
         held.take(block)
     })?;
     let (mut second, wanted) = first.second_pass(&set);
+    if let Some(blocks) = &held.blocks {
+        second.bulk = Bulk::of_blocks(blocks);
+    }
     let Some(wanted) = wanted else { return Ok(second.finish(&set)) };
     if let Some(blocks) = held.blocks {
         watch.stage("counting values", blocks.len() as u64);
@@ -80,6 +84,7 @@ impl PointSummary {
         let mut first = First::new();
         first.see(set, Colors::Linear);
         let (mut second, wanted) = first.second_pass(set);
+        second.bulk = Bulk::of(&set.positions);
         if wanted.is_some() {
             second.see(set, Colors::Linear);
         }
@@ -154,6 +159,7 @@ impl First {
     fn second_pass(mut self, set: &PointSet) -> (Second, Option<Wanted>) {
         let values = self.columns.second_pass(set);
         let coincident = self.distinct.coincident();
+        let bulk = Bulk::of_distinct(&self.distinct);
         let nearest = Nearest::new(self.distinct);
         let no_values = || Wanted::Some { colors: false, normals: false, attributes: Vec::new() };
         let wanted = values.or_else(|| nearest.needs_all().then(no_values));
@@ -163,6 +169,7 @@ impl First {
             max: self.max,
             coincident,
             columns: self.columns,
+            bulk,
             nearest,
             seen: 0,
         };
@@ -177,6 +184,7 @@ struct Second {
     max: [f64; 3],
     coincident: (u64, bool),
     columns: Columns,
+    bulk: Bulk,
     nearest: Nearest,
     /// Points that went past.
     seen: u64,
@@ -187,6 +195,7 @@ impl Second {
         if self.nearest.needs_all() {
             block.positions.iter().for_each(|position| self.nearest.see(position));
         }
+        self.bulk.see(&block.positions);
         self.seen += block.positions.len() as u64;
         self.columns.count(block, colors);
     }
@@ -194,12 +203,14 @@ impl Second {
     fn begin_again(&mut self) {
         // The same points once more bring no other neighbours.
         self.seen = 0;
+        self.bulk.begin_again();
         self.columns.begin_again();
     }
 
     /// `set` has all that is known of the file besides its points.
     fn finish(self, set: &PointSet) -> PointSummary {
         let (coincident, coincident_counted) = self.coincident;
+        let found = self.bulk.finish(self.points, [self.min, self.max]);
         let (spacing, spacing_sample) = self.nearest.median().unzip();
         PointSummary {
             format: set.format.clone(),
@@ -208,6 +219,8 @@ impl Second {
             filtered_out: set.filtered_out,
             min: self.min,
             max: self.max,
+            bulk: found.bulk,
+            apart: found.apart,
             attributes: self.columns.finish(),
             coincident,
             coincident_counted,
