@@ -142,7 +142,8 @@ mod tests {
             ("a.obj.gz", "v 1 2 3\n"),
             ("a", "OFF\n1 0 0\n1 2 3\n"),
         ] {
-            let plain = try_read(contents.as_bytes(), name).unwrap();
+            let inner = inner_name(Path::new(name));
+            let plain = try_read(contents.as_bytes(), &inner.to_string_lossy()).unwrap();
             let set = try_read(&packed(contents.as_bytes()), name).unwrap();
             assert_eq!(set.positions[0], [1.0, 2.0, 3.0], "{name}");
             assert_eq!(set.format, format!("{}, packed by gzip", plain.format));
