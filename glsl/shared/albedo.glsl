@@ -20,18 +20,25 @@ layout(std430, binding = SHADE_COLORS) readonly buffer Colors { float colors[]; 
 #define MOST_ASKED 2048u
 #define ASKED_AT_ONCE 32u
 
-// What a point of the object has: a colour, or with a texture its place in it.
+// What a point of the object has: a colour, or with a texture its place in it. A colour whose red is
+// negative is what a point without a value is drawn in.
 vec3 value_of(ObjectInfo object, uint slot) {
     bool is_color = object.texture == NONE;
     uint at = object.first_color + (is_color ? 3u : 2u) * (slot - object.first_slot);
     return vec3(colors[at], colors[at + 1u], is_color ? colors[at + 2u] : 0.0);
 }
 
-// The mean over the points of the object around x, by the weights of normals that are blended; where
-// none has a weight, what the point at `slot` has. The object's points have values.
+// Whether a point of the object has no value, by what value_of gives.
+bool has_none(ObjectInfo object, vec3 value) {
+    return object.texture == NONE && value.x < 0.0;
+}
+
+// The mean over the points of the object around x that have a value, by the weights of normals that are blended; where
+// none has a weight, or it has no value, what the point at `slot` has. The object's points have values.
 // First the trust balls that hold x, up to 32 into a bit mask, then their weights: few of a cell do.
 vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
-    vec3 sum = 1e-6 * value_of(object, slot);
+    vec3 own = value_of(object, slot);
+    vec3 sum = 1e-6 * own;
     float weights = 1e-6;
     uvec2 slots = uvec2(object.first_slot, object.slot_count);
     Around around = points_around(x, slots);
@@ -44,7 +51,9 @@ vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
             while (near != NONE) {
                 vec3 normal;
                 float weight = weight_at(polynomial_of(near), x, normal);
-                sum += weight * value_of(object, near);
+                vec3 value = value_of(object, near);
+                weight = has_none(object, value) ? 0.0 : weight;
+                sum += weight * value;
                 weights += weight;
                 near = next_around(merge, x, slots);
             }
@@ -65,11 +74,13 @@ vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
             holding &= holding - 1u;
             vec3 normal;
             float weight = weight_at(polynomial_of(near), x, normal);
-            sum += weight * value_of(object, near);
+            vec3 value = value_of(object, near);
+            weight = has_none(object, value) ? 0.0 : weight;
+            sum += weight * value;
             weights += weight;
         }
     }
-    return sum / weights;
+    return has_none(object, own) ? vec3(-own.x, own.yz) : sum / weights;
 }
 
 // The albedo at x of the object at `index`, whose point at `slot` was hit.

@@ -1,8 +1,11 @@
-//! One coloured cloud in every format and encoding: one picture.
+//! One coloured cloud in every format and encoding: one picture; and points that lack a value.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use ::e57::{E57Writer, Record, RecordValue};
-use harness::{assert_same_film, fibonacci_sphere, plan_of, render_twin, shared_data};
+use harness::{
+    Bench, assert_same_bits, assert_same_film, fibonacci_sphere, plan_of, render_twin, set_of,
+    shared_data, with_attribute,
+};
 use points::{PointSet, ReadOptions};
 use std::fmt::Write;
 use std::io::Cursor;
@@ -331,7 +334,9 @@ fn one_cloud_has_one_picture_in_every_format_and_encoding() {
     for (name, bytes) in &files {
         let set = read(name, bytes);
         assert!(set.colors.is_some(), "{name}: no colours, {}", set.format);
-        assert!(set.notes.is_empty(), "{name}: {:?}", set.notes);
+        // Of columns without names, what they were taken for may be in doubt.
+        let sure = set.notes.iter().all(|note| note.starts_with("the columns have no names"));
+        assert!(sure, "{name}: {:?}", set.notes);
         let plan = plan_of(SCENE, &[set]);
         // Everything that the picture depends on; the pictures of some, to be sure.
         assert_eq!(plan.cloud.points, expected.cloud.points, "{name}: points");
@@ -361,4 +366,62 @@ fn reported_files_have_one_picture() {
     });
     assert_same_film("floats of 0 to 255", &floats, &expected);
     assert_same_film("fractions in OBJ", &obj, &expected);
+}
+
+/// Half of a sphere lacks the attribute, in stripes; the other half has one value of it. Every hit is in the colour of
+/// that value or in purple, and nothing between them, under every map, on the device and the CPU.
+#[test]
+fn points_without_a_value_are_purple_and_not_interpolated() {
+    let positions = fibonacci_sphere(2_000);
+    let is_none = |p: [f64; 3]| (1.5 * p[1]).floor() % 2.0 == 0.0;
+    let lacking = positions.iter().filter(|&&p| is_none(p)).count() as u64;
+    let set =
+        with_attribute(set_of(positions), "temp", |p| if is_none(p) { f64::NAN } else { 7.0 });
+    for map in ["viridis", "turbo", "gray"] {
+        let text = format!(
+            "{SCENE}[[objects]]\npoints = \"a.ply\"\nmaterial = {{ albedo = \"attribute:temp\", color_map = \
+             \"{map}\" }}\n"
+        );
+        let plan = plan_of(&text, std::slice::from_ref(&set));
+        assert_eq!((plan.missing[0].points, plan.missing[0].of), (lacking, 2_000));
+        let on_device = Bench::open().render(&plan);
+        assert_same_bits(map, &on_device, &render_twin(&plan));
+        let value = plan.colors.chunks(3).find(|color| color[0] > 0.0).expect("a value");
+        let (mut purple, mut valued) = (0, 0);
+        for (pixel, position) in on_device.film.color.iter().zip(&on_device.film.position) {
+            let &[r, g, b, _] = pixel;
+            if r.max(b) == 0.0 {
+                continue;
+            }
+            let is_value = (r * value[1] - g * value[0]).abs() <= 1e-5 && g > 0.0;
+            let is_purple = g == 0.0 && r == b;
+            assert!(is_value || is_purple, "{map}: {pixel:?}");
+            purple += u32::from(is_purple);
+            valued += u32::from(is_value);
+            // Farther from the stripes' edges than a trust ball reaches, 0.12.
+            let y = f64::from(position[1]);
+            if (1.5 * y - (1.5 * y).round()).abs() > 0.25 {
+                assert_eq!(is_purple, is_none([0.0, y, 0.0]), "{map}: {position:?}");
+            }
+        }
+        assert!(purple > 500 && valued > 500, "{map}: {purple} and {valued}");
+    }
+}
+
+/// A colour that is not a number takes no part either, and is drawn as if there were none.
+#[test]
+fn colors_that_are_no_numbers_make_no_pixel_that_is_none() {
+    let mut set = set_of(fibonacci_sphere(500));
+    let color = |i: usize| if i.is_multiple_of(3) { [f32::NAN; 3] } else { [0.2, 0.4, 0.1] };
+    set.colors = Some((0..500).map(color).collect());
+    let plan = plan_of(SCENE, &[set]);
+    assert_eq!(plan.missing[0].points, 167);
+    let film = render_twin(&plan).film;
+    let lit: Vec<_> = film.color.iter().filter(|pixel| pixel[0] > 0.0).collect();
+    assert!(lit.len() > 1_000, "{} pixels", lit.len());
+    for pixel in lit {
+        assert!(pixel.iter().all(|channel| channel.is_finite()), "{pixel:?}");
+        let ratio = pixel[1] / pixel[0];
+        assert!((ratio - 1.0).abs() < 1e-5 || (ratio - 2.0).abs() < 1e-4, "{pixel:?}");
+    }
 }

@@ -29,8 +29,12 @@ pub(crate) fn own_colors(set: &PointSet, colors: &[[f32; 3]]) -> Vec<[f32; 3]> {
         }
         _ => colors.to_vec(),
     };
-    for color in own.iter_mut().filter(|color| color.iter().any(|c| c.is_nan())) {
-        *color = marked(DEFAULT_ALBEDO);
+    for color in &mut own {
+        // What no picture can show comes from no reader, but a set may have it.
+        *color = match color.iter().any(|c| c.is_nan()) {
+            true => marked(DEFAULT_ALBEDO),
+            false => color.map(|c| c.clamp(0.0, 1e15)),
+        };
     }
     own
 }

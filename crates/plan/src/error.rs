@@ -106,8 +106,8 @@ pub enum PlanError {
     },
     /// An attribute without one finite value.
     #[error(
-        "object '{name}': material.albedo is \"attribute:{attribute}\" but none of its values in {file} is a \
-         finite number; take another attribute"
+        "object '{name}': material.albedo is \"attribute:{attribute}\" but none of its values in {file} is \
+         finite; take another attribute"
     )]
     NoValues {
         /// The object.

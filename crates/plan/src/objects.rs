@@ -113,9 +113,6 @@ pub(crate) fn object_infos(
                     let (object, of) = (object.name.clone(), values.len() as u64);
                     missing.push(Missing { object, what, points, of });
                 }
-                // Kernels do not know the mark yet: such points are interpolated like others.
-                let values: Vec<[f32; 3]> =
-                    values.iter().map(|&[red, green, blue]| [red.abs(), green, blue]).collect();
                 colors.extend(cloud.by_slot(index, &values).iter().flatten());
             }
             PointValues::Places(values) => {

@@ -46,6 +46,9 @@ const MOST_BEAMS: u64 = 256;
 const SECTORS: usize = 36;
 const FEW: usize = 6;
 
+/// A point, and its place in the map.
+type Placed = ([f64; 3], u64);
+
 /// Which way is up in points that come in rows and columns, and why; `None` where they do not show it.
 /// `by_columns` says that one column comes after the other.
 pub(crate) fn of_map(
@@ -54,19 +57,18 @@ pub(crate) fn of_map(
     by_columns: bool,
 ) -> Option<(Upwards, &'static str)> {
     // What was not measured is zero in some files.
-    let there = |p: &&([f64; 3], u64)| p.0 != [0.0; 3];
+    let there = |p: &&Placed| p.0 != [0.0; 3];
     let step = set.len().div_ceil(SAMPLE).max(1);
     let places = set.file_index.iter().map(|&index| u64::from(index));
-    let points: Vec<([f64; 3], u64)> =
-        set.positions.iter().copied().zip(places).step_by(step).collect();
-    let points: Vec<&([f64; 3], u64)> = points.iter().filter(there).collect();
+    let points: Vec<Placed> = set.positions.iter().copied().zip(places).step_by(step).collect();
+    let points: Vec<&Placed> = points.iter().filter(there).collect();
     if points.len() < FEWEST || columns < 2 || rows < 2 {
         return None;
     }
     let length = if by_columns { rows } else { columns };
-    let minor = |p: &&([f64; 3], u64)| (p.1 % length) as f64;
-    let major = |p: &&([f64; 3], u64)| (p.1 / length) as f64;
-    let each = |value: &dyn Fn(&&([f64; 3], u64)) -> f64| points.iter().map(value).collect();
+    let minor = |p: &&Placed| (p.1 % length) as f64;
+    let major = |p: &&Placed| (p.1 / length) as f64;
+    let each = |value: &dyn Fn(&&Placed) -> f64| points.iter().map(value).collect();
     let (minor, major): (Vec<f64>, Vec<f64>) = (each(&minor), each(&major));
     let (columns_of, rows_of) = if by_columns { (major, minor) } else { (minor, major) };
 

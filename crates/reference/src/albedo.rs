@@ -38,16 +38,27 @@ impl<R: Real> Albedos<'_, R> {
         V3::of_f32(value)
     }
 
-    /// The mean over the points of the object around x; where none has a weight, the value of the point
-    /// that was hit.
+    /// Whether a point of the object has no value: its red is negative.
+    fn has_none(&self, object: &ObjectInfo, slot: u32) -> bool {
+        let at = (object.first_color + 3 * (slot - object.first_slot)) as usize;
+        object.texture == NONE && self.colors[at] < 0.0
+    }
+
+    /// The mean over the points of the object around x that have a value; where none has a weight, or the
+    /// point that was hit has no value, what that has.
     fn blended_value(&self, object: &ObjectInfo, slot: u32, x: V3<R>) -> V3<R> {
         let slots = slots_of(object);
-        let own = (self.value_of(object, slot).times(R::of(1e-6)), R::of(1e-6));
+        let own = self.value_of(object, slot);
+        if self.has_none(object, slot) {
+            let V3([red, green, blue]) = own;
+            return V3([R::of(0.0) - red, green, blue]);
+        }
+        let own = (own.times(R::of(1e-6)), R::of(1e-6));
         let around =
             points_around(self.levels, self.lists, self.polynomials, x, slots.clone(), MOST_ASKED);
         let (sum, weights) = around
             .iter()
-            .filter(|near| slots.contains(near))
+            .filter(|near| slots.contains(near) && !self.has_none(object, **near))
             .map(|&near| (near, &self.polynomials[near as usize]))
             .fold(own, |(sum, weights), (near, p)| {
                 let (weight, _) = weight_at(p, x);
