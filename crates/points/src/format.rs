@@ -5,7 +5,7 @@ use crate::options::ReadOptions;
 use crate::set::PointSet;
 use crate::source::Source;
 use crate::upright::Upwards;
-use crate::{e57, esri, las, npy, obj, off, pcd, ply, ptx, text, vtk};
+use crate::{e57, esri, gzip, las, npy, obj, off, pcd, ply, ptx, text, vtk};
 use std::path::Path;
 
 /// A format that points are read from.
@@ -95,7 +95,8 @@ pub(crate) static FORMATS: &[Format] = &[
 impl Format {
     /// Which way is up in files of this format, and why, where that is not +y.
     pub(crate) fn up(&self, path: &Path) -> Option<(Upwards, &'static str)> {
-        let is_pts = || path.extension().is_some_and(|e| e.eq_ignore_ascii_case("pts"));
+        let name = gzip::inner_name(path);
+        let is_pts = || name.extension().is_some_and(|e| e.eq_ignore_ascii_case("pts"));
         match self.name {
             "LAS" | "E57" | "PTX" => Some((Upwards::Z, "as in surveys")),
             "text" if is_pts() => Some((Upwards::Z, "as around a scanner")),
