@@ -1,6 +1,8 @@
 //! Files whose x and y are longitude and latitude in degrees: by the names of their columns, by their
 //! coordinate reference system, or only by the look of their numbers.
 
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
 use points::{PointSet, ReadOptions, Units, read_bytes};
 use std::path::Path;
 

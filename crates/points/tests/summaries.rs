@@ -1,5 +1,7 @@
 //! Summaries of files: the same in passes over a file as of the set that is held.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
 use points::{PointSummary, PointsError, ReadOptions, Unwatched, summarize};
 use std::fmt::Write as _;
 use std::io::Write as _;
