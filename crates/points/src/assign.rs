@@ -84,11 +84,12 @@ impl Columns {
 
     /// Whether a column gets this name, in any letter case.
     fn has(&self, name: &str) -> bool {
-        self.named.iter().any(|(other, _)| other.eq_ignore_ascii_case(name))
+        self.named.iter().any(|(other, _)| plain(other) == plain(name))
     }
 
     /// Whether columns for x, y and z are named: all of them, or none.
     pub(crate) fn position(&self, path: &Path) -> Result<bool, PointsError> {
+        self.are_different(path)?;
         let (there, missing): (Vec<&str>, Vec<&str>) =
             AXES.into_iter().partition(|axis| self.has(axis));
         if there.is_empty() || missing.is_empty() {
@@ -101,6 +102,25 @@ impl Columns {
             "x, y and z, as the file has no names",
             "say the columns of all three",
         ))
+    }
+
+    /// Fails if two columns get one name, in any letter case.
+    fn are_different(&self, path: &Path) -> Result<(), PointsError> {
+        for (place, (name, column)) in self.named.iter().enumerate() {
+            let earlier = &self.named[..place];
+            if let Some((other, first)) =
+                earlier.iter().find(|(other, _)| plain(other) == plain(name))
+            {
+                return Err(PointsError::wrong(
+                    path,
+                    &format!("the columns of '{}' and '{}'", printable(other), printable(name)),
+                    format!("{} and {}", in_words(first), in_words(column)),
+                    "names that differ by more than letter case",
+                    "rename or remove one of them",
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// The same with columns for x, y and z, where these fields have them.
@@ -118,6 +138,7 @@ impl Columns {
         names: &[String],
         path: &Path,
     ) -> Result<Vec<Assigned>, PointsError> {
+        self.are_different(path)?;
         let mut assigned = vec![Assigned::Kept; names.len()];
         for (name, column) in &self.named {
             let place = self.place(name, column, names, path)?;
@@ -329,6 +350,11 @@ mod tests {
                 of(vec![named("x", "a"), named("red", "A")]),
                 "found 'A' of the file as the column of both 'x' and 'red', expected a column for \
                  each; change one of them",
+            ),
+            (
+                of(vec![named("x", "a"), ("X".to_owned(), Column::Number(2))]),
+                "found 'a' and column 2 as the columns of 'x' and 'X', expected names that differ by \
+                 more than letter case; rename or remove one of them",
             ),
             (
                 Columns { left_out: vec![1], ..of(vec![named("x", "a")]) },

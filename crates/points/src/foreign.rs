@@ -105,6 +105,8 @@ static FOREIGN: &[Foreign] = &[
     row("a MATLAB file", &["mat"], Has(&[(0, b"MATLAB 5.0"), (0, b"MATLAB 7"), (0, HDF)]), "read it with scipy.io.loadmat or h5py and save the positions with numpy.savez"),
     row("a NetCDF file", &["nc", "nc4", "cdf"], Has(&[(0, b"CDF\x01"), (0, b"CDF\x02"), (0, b"CDF\x05"), (0, HDF)]), SCIENCE),
     row("a snapshot of Gadget", &["gadget"], Fits(is_gadget), "read the positions with yt or pynbody and save them with numpy.savez"),
+    row("a dump or data file of LAMMPS", &["lammpstrj", "lammps", "dump"], Fits(is_lammps), "save it in OVITO as extended XYZ"),
+    row("a Bundler or VisualSFM model", &["nvm"], Has(&[(0, b"# Bundle file"), (0, b"NVM_V3")]), "open it in MeshLab or COLMAP and save the points as PLY"),
     row("an XDMF file", &["xdmf", "xmf"], Text("<", &["<Xdmf"]), PARAVIEW),
     row("an Exodus or EnSight file", &["exo", "ex2", "e", "case", "encas"], Anyhow, PARAVIEW),
     row("a Tecplot file", &["plt", "szplt", "tec"], Has(&[(0, b"#!TDV"), (0, b"#!SZPLT")]), PARAVIEW),
@@ -182,6 +184,12 @@ fn is_gadget(start: &[u8]) -> bool {
         |place: usize| start.get(place..place + 4)?.try_into().ok().map(u32::from_le_bytes);
     (length(0) == Some(256) && length(260) == Some(256))
         || (length(0) == Some(8) && start.get(4..8) == Some(b"HEAD"))
+}
+
+/// Records of a dump begin with `ITEM:`; of data, the title of the first line mostly says LAMMPS.
+fn is_lammps(start: &[u8]) -> bool {
+    start.starts_with(b"ITEM: ")
+        || (start.starts_with(b"LAMMPS ") && has(start, " atoms") && has(start, " atom types"))
 }
 
 fn has(start: &[u8], word: &str) -> bool {

@@ -25,9 +25,10 @@ pub(crate) struct Guess {
 }
 
 /// Judges the columns, of which there are three or more. `kinds` are their types where the file
-/// states them.
-pub(crate) fn by_place(sample: &Sample, kinds: Option<&[Type]>) -> Guess {
-    let evidence = Evidence::of(sample);
+/// states them; `places` are those that they have in the file, where others stand between them, such
+/// as text.
+pub(crate) fn by_place(sample: &Sample, kinds: Option<&[Type]>, places: Option<&[usize]>) -> Guess {
+    let evidence = Evidence::of(sample, places);
     let mut guess =
         Guesser { evidence: &evidence, names: vec![None; sample.columns], doubts: vec![] };
     let first = guess.position();
@@ -44,7 +45,7 @@ pub(crate) fn by_place(sample: &Sample, kinds: Option<&[Type]>) -> Guess {
                 Some(name) if RED.contains(&name) => Field::new(name, color.unwrap_or(stated)),
                 Some(name) if NX.contains(&name) => Field::new(name, Type::F32),
                 Some(name) => Field::new(name, stated),
-                None => Field::new(numbered(place), stated),
+                None => Field::new(numbered(evidence.place(place)), stated),
             }
         })
         .collect();
@@ -57,14 +58,6 @@ pub(crate) fn numbered(place: usize) -> String {
     format!("column_{}", place + 1)
 }
 
-/// Columns in words: `column 4`, `columns 4 to 6`.
-fn columns(first: usize, count: usize) -> String {
-    match count {
-        1 => format!("column {}", first + 1),
-        _ => format!("columns {} to {}", first + 1, first + count),
-    }
-}
-
 struct Guesser<'a> {
     evidence: &'a Evidence,
     names: Vec<Option<&'static str>>,
@@ -74,26 +67,31 @@ struct Guesser<'a> {
 impl Guesser<'_> {
     /// Names the position, and returns the first column after it.
     fn position(&mut self) -> usize {
-        let counted = self.evidence.counts_points();
-        let first = usize::from(counted);
+        let evidence = self.evidence;
+        let number = evidence.counts_points();
+        let first = usize::from(number.is_some());
         let mut axes = ["x", "y", "z"];
-        let northing_first = self.evidence.northing_before_easting(first);
-        if counted {
+        let northing_first = evidence.northing_before_easting(first);
+        let [one, two] = [first, first + 1].map(|place| evidence.columns_in_words(place, 1));
+        if let Some(number) = number {
             self.names[0] = Some(POINT_NUMBER);
-            self.doubts.push("column 1 counts up by one".to_owned());
+            self.doubts.push(format!("column 1 {number}"));
+        }
+        if number.is_some() || evidence.are_named() {
             if northing_first {
                 axes.swap(0, 1);
-                self.doubts.push("column 2 is like a northing and column 3 like an easting".into());
-            } else if self.evidence.is_large(first) && self.evidence.is_large(first + 1) {
+                self.doubts.push(format!("{one} is like a northing and {two} like an easting"));
+            } else if evidence.is_large(first) && evidence.is_large(first + 1) {
                 self.doubts.push(
                     "if the northing comes before the easting, x and y are exchanged".to_owned(),
                 );
             }
         } else if northing_first {
-            self.doubts.push(
-                "column 1 is like a northing and column 2 like an easting, which would be y and x"
-                    .to_owned(),
-            );
+            self.doubts.push(format!(
+                "{one} is like a northing and {two} like an easting, which would be y and x"
+            ));
+        } else if let Some(oddity) = evidence.oddity_of_first() {
+            self.doubts.push(format!("column 1 {oddity}"));
         }
         for (place, axis) in axes.into_iter().enumerate() {
             self.names[first + place] = Some(axis);
@@ -124,7 +122,10 @@ impl Guesser<'_> {
             && evidence.is_opaque(color.end(), color.kind)
         {
             self.names[color.end()] = Some("alpha");
-            self.doubts.push(format!("column {} is the same throughout", color.end() + 1));
+            self.doubts.push(format!(
+                "{} is the same throughout",
+                evidence.columns_in_words(color.end(), 1)
+            ));
         }
         let last_triple = triples.end().unwrap_or(after_position);
         let trailing = last_triple..columns;
@@ -138,7 +139,8 @@ impl Guesser<'_> {
         };
         if let Some(place) = label {
             self.names[place] = Some(LABEL);
-            self.doubts.push(format!("column {} has few, small whole numbers", place + 1));
+            let column = evidence.columns_in_words(place, 1);
+            self.doubts.push(format!("{column} has few, small whole numbers"));
         }
         let before = triples.start().unwrap_or(columns);
         let mut leading = (after_position..before).filter(|&place| self.is_free(place));

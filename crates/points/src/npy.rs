@@ -33,6 +33,8 @@ const MAX_COLUMNS: usize = 1000;
 const MAP_COLUMNS: std::ops::RangeInclusive<u64> = 3..=10;
 /// Up to so many columns, three rows are three points.
 const MOST_ROWS_OF_THREE: u64 = 16;
+/// Fewer points than columns are doubtful beyond so many of these.
+const MOST_COLUMNS_OF_FEW: u64 = 40;
 
 const HELP: &str = "save it again with numpy.save";
 
@@ -121,7 +123,7 @@ pub(crate) fn read(
     let (fields, note) = match (header.record.has_names, options.columns.is_empty()) {
         (true, _) => (named(&rows.names, &kinds, &sample, path, &options.columns)?, None),
         (false, true) => {
-            let guess = guess::by_place(&sample, Some(&kinds));
+            let guess = guess::by_place(&sample, Some(&kinds), None);
             (guess.fields, guess.note)
         }
         (false, false) => (said(&sample, &kinds, path, &options.columns)?, None),
@@ -137,6 +139,9 @@ pub(crate) fn read(
         format!("{columns} taken for {}", meaning::listed(&fields))
     };
     let mut set = collector.finish(&format!("NPY, shape {shape}, {taken}"))?;
+    if options.columns.is_empty() {
+        set.notes.extend(doubt(&header, &rows));
+    }
     set.notes.extend(note);
     // Of a map, points come row after row, or column after column.
     if let ([rows, columns, width], false) = (&*header.shape, header.record.has_names)
@@ -158,6 +163,30 @@ fn is_lattice(header: &Header) -> bool {
     }
 }
 
+/// Why the shape or the type of an array is unlike points, if it is.
+fn doubt(header: &Header, rows: &Rows) -> Option<String> {
+    let shape = header.shape_in_words();
+    let (points, width) = (rows.points, rows.names.len());
+    let longer = header.shape.iter().filter(|&&length| length > 1).count();
+    let bytes = |kind| matches!(kind, Type::U8 | Type::I8);
+    match *header.shape {
+        _ if header.record.has_names || rows.transposed => None,
+        [_, _, _, .., _] if longer > 3 => Some(format!(
+            "the shape {shape} was taken for {points} points of {width} numbers; if it is a lattice with \
+             {width} values at each node, save its nodes' places and values as columns, as \
+             numpy.column_stack([numpy.indices(a.shape[:-1]).reshape(a.ndim - 1, -1).T, a.reshape(-1, \
+             {width})]) has them"
+        )),
+        [_, _, _] if rows.kinds().into_iter().all(bytes) => Some(format!(
+            "the shape {shape} of 8-bit integers is like a picture's, but was taken for {points} points"
+        )),
+        [rows, columns] if columns > MOST_COLUMNS_OF_FEW && columns > rows => Some(format!(
+            "the array has {rows} rows of {columns} columns; if its columns are the points, save a.T"
+        )),
+        _ => None,
+    }
+}
+
 /// The columns of an array without names, as the user says.
 fn said(
     sample: &Sample,
@@ -169,7 +198,7 @@ fn said(
     let columns = match columns.position(path)? {
         true => columns.clone(),
         // The position is where it would be without.
-        false => columns.with_position(&guess::by_place(sample, Some(kinds)).fields),
+        false => columns.with_position(&guess::by_place(sample, Some(kinds), None).fields),
     };
     named(&names, kinds, sample, path, &columns)
 }

@@ -16,8 +16,16 @@ use std::sync::Arc;
 /// Prints what is there.
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let progress = Progress::new(&args.progress);
-    if args.columns.is_some() && input::is_scene_file(&args.file) {
-        return Err(input::columns_of_scene(&args.file));
+    if args.columns.is_some() {
+        if input::is_scene_file(&args.file) {
+            return Err(input::columns_of_scene(&args.file));
+        }
+        if info_picture::is_picture(&args.file) {
+            return Err(Failure::usage(format!(
+                "{}: --columns is for point files, but this is a picture; leave it out",
+                args.file.display()
+            )));
+        }
     }
     let text = if input::is_scene_file(&args.file) {
         of_scene(args, &progress)?

@@ -77,6 +77,12 @@ fn columns_that_are_not_there_are_errors() {
     run(&["render", "s.toml", "--columns", "x,y,z", "-o", "a.png"])
         .fails_with(2, &["s.toml: --columns is for point files", "[objects.columns]"]);
     run(&["info", "ball.txt", "--columns", "x,y"]).fails_with(2, &["found no 'z' in the list"]);
+    folder.write("p.png", "");
+    run(&["info", "p.png", "--columns", "x,y,z"])
+        .fails_with(2, &["p.png: --columns is for point files, but this is a picture"]);
+    folder.write("two.toml", &scene("columns = { x = 1, X = 2, z = 3 }"));
+    run(&["check", "two.toml"])
+        .fails_with(2, &["column 1 and column 2 as the columns of 'x' and 'X'"]);
     let far = "_,y,x,z,_,red,green,blue,alpha";
     run(&["render", "ball.txt", "--columns", far, "-o", "a.png"])
         .fails_with(2, &["found 9 as the column of 'alpha', expected a number from 1 to 8"]);

@@ -20,6 +20,8 @@ const GREATEST_LABEL_OF_FEW: f64 = 20.0;
 pub(super) struct Evidence {
     pub(super) rows: usize,
     pub(super) columns: Vec<Column>,
+    /// The places of the columns in the file, where they are not the same.
+    places: Option<Vec<usize>>,
 }
 
 /// What is known of one column. What is not finite does not count.
@@ -42,6 +44,8 @@ pub(super) enum Scale {
     Fractions,
     /// Whole, from 0 to 255.
     Bytes,
+    /// From 0 to 255, with digits after the point.
+    Averages,
     /// Whole, from 0 to 65535.
     Words,
 }
@@ -49,7 +53,7 @@ pub(super) enum Scale {
 impl Scale {
     /// How the collector is to take it. It finds bytes in fields of 16 bits by itself.
     pub(super) fn kind(self) -> Type {
-        if self == Self::Fractions { Type::F32 } else { Type::U16 }
+        if matches!(self, Self::Fractions | Self::Averages) { Type::F32 } else { Type::U16 }
     }
 }
 
@@ -83,29 +87,73 @@ impl Column {
     fn counts_up(&self) -> bool {
         self.whole && self.values.windows(2).all(|pair| pair[1] - pair[0] == 1.0)
     }
+
+    /// Whether each value is whole and greater than the one before it.
+    fn rises(&self) -> bool {
+        self.whole && self.values.windows(2).all(|pair| pair[1] > pair[0])
+    }
 }
 
 impl Evidence {
-    pub(super) fn of(sample: &Sample) -> Self {
+    pub(super) fn of(sample: &Sample, places: Option<&[usize]>) -> Self {
         let columns: Vec<Column> = (0..sample.columns)
             .map(|place| Column::of(sample.column(place).collect(), sample.is_float(place)))
             .collect();
-        Self { rows: columns.first().map_or(0, |column| column.values.len()), columns }
+        let rows = columns.first().map_or(0, |column| column.values.len());
+        Self { rows, columns, places: places.map(<[usize]>::to_vec) }
+    }
+
+    /// The place of a column in the file.
+    pub(super) fn place(&self, column: usize) -> usize {
+        self.places.as_ref().map_or(column, |places| places[column])
+    }
+
+    /// Columns as messages call them: `column 4`, `columns 4 to 6`.
+    pub(super) fn columns_in_words(&self, first: usize, count: usize) -> String {
+        let [from, to] = [first, first + count - 1].map(|column| self.place(column) + 1);
+        if count == 1 { format!("column {from}") } else { format!("columns {from} to {to}") }
+    }
+
+    /// Whether a name stands before the numbers of each point.
+    pub(super) fn are_named(&self) -> bool {
+        self.place(0) > 0
     }
 
     pub(super) fn few_rows(&self) -> bool {
         self.rows < FEW_ROWS
     }
 
-    /// Whether the first column is the points' number rather than a coordinate: it counts up by one,
-    /// and neither do the others nor does the next one stay the same, as the rows of a lattice do.
-    pub(super) fn counts_points(&self) -> bool {
-        let [first, others @ ..] = self.columns.as_slice() else { return false };
-        others.len() >= 3
-            && self.rows >= 3
-            && first.counts_up()
-            && !others[0].is_constant()
-            && !others[..3].iter().any(Column::counts_up)
+    /// What shows that the first column is the points' number rather than a coordinate, if anything does:
+    /// it counts up by one, and neither do the others nor does the next one stay the same, as the rows
+    /// of a lattice do; or it rises by whole numbers where the next three have fractions.
+    pub(super) fn counts_points(&self) -> Option<&'static str> {
+        let [first, others @ ..] = self.columns.as_slice() else { return None };
+        if others.len() < 3 || self.rows < 3 {
+            return None;
+        }
+        let others = &others[..3];
+        if first.counts_up() {
+            let is_lattice = others[0].is_constant() || others.iter().any(Column::counts_up);
+            return (!is_lattice).then_some("counts up by one");
+        }
+        let rises = !self.few_rows() && first.rises() && others.iter().all(|other| !other.whole);
+        rises.then_some("rises by whole numbers")
+    }
+
+    /// What is unlike a coordinate in the first column, where more than a position is there.
+    pub(super) fn oddity_of_first(&self) -> Option<&'static str> {
+        let [first, others @ ..] = self.columns.as_slice() else { return None };
+        if others.len() < 3 || self.few_rows() {
+            None
+        } else if first.is_constant() {
+            Some("is the same throughout")
+        } else if first.counts_up() {
+            Some("counts up by one")
+        } else if first.whole && !others[1].whole {
+            Some("has only whole numbers")
+        } else {
+            None
+        }
     }
 
     /// Whether two columns can only be a northing and then an easting: in the zones of UTM, eastings
@@ -143,6 +191,8 @@ impl Evidence {
             Some(Scale::Bytes)
         } else if whole && within(65535.0) && !three.iter().any(|column| self.counts(column)) {
             Some(Scale::Words)
+        } else if !whole && within(255.0) {
+            Some(Scale::Averages)
         } else {
             None
         }

@@ -5,7 +5,7 @@ use super::*;
 fn guess(rows: &[Vec<f64>], floats: bool) -> Guess {
     let columns = rows[0].len();
     let values = rows.iter().flatten().copied().collect();
-    by_place(&Sample { columns, values, floats: vec![floats; columns] }, None)
+    by_place(&Sample { columns, values, floats: vec![floats; columns] }, None, None)
 }
 
 fn placed(row: &[f64], floats: bool) -> String {
@@ -156,7 +156,63 @@ fn points_numbers_are_no_coordinates() {
     assert_eq!(found, "point_number x y z");
     assert!(note.contains("if the northing comes before the easting, x and y are exchanged"));
     assert_eq!(listed(&survey(|i| i as f64 * 2.0, 10.0, 20.0)).0, "x y z intensity");
+    // Some points were deleted, and their numbers with them.
+    let gaps = |i: usize| (i * 3 + i % 2) as f64;
+    let row = |i: usize| vec![gaps(i), 7.5 + noise(i, 1), 0.25 + noise(i, 2), 0.5];
+    let (found, note) = listed(&(0..20).map(row).collect::<Vec<_>>());
+    assert_eq!(found, "point_number x y z");
+    assert!(note.contains("(column 1 rises by whole numbers)"), "{note}");
+    // What does not rise, or rises where the others are whole numbers too, is a coordinate.
+    let row = |i: usize| vec![noise(i, 3), 7.5 + noise(i, 1), 0.25 + noise(i, 2), 0.5];
+    let (found, note) = listed(&(0..20).map(row).collect::<Vec<_>>());
+    assert_eq!(found, "x y z intensity");
+    assert!(note.contains("(column 1 has only whole numbers)"), "{note}");
+    let row = |i: usize| vec![i as f64 * 2.0, 7.5 + noise(i, 1), 0.25 + noise(i, 2), 9.0];
+    assert_eq!(listed(&(0..20).map(row).collect::<Vec<_>>()).0, "x y z label");
+    // The masses of a simulation's particles.
+    let row = |i: usize| vec![0.001, 7.5 + noise(i, 1), 0.25 + noise(i, 2), noise(i, 3), 0.5];
+    let (found, note) = listed(&(0..20).map(row).collect::<Vec<_>>());
+    assert_eq!(found, "x y z column_4 column_5");
+    assert!(note.contains("(column 1 is the same throughout)"), "{note}");
     // The first row of a lattice counts up, too.
     let lattice: Vec<Vec<f64>> = (0..20).map(|i| vec![f64::from(i), 0.0, 0.5, 7.0]).collect();
     assert_eq!(listed(&lattice).0, "x y z label");
+}
+
+#[test]
+fn colours_up_to_255_may_have_fractions() {
+    let half = |i: usize, seed: usize| noise(i, seed) / 2.0;
+    for (name, color) in [
+        (
+            "spread over the range",
+            Box::new(|i| vec![half(i, 1), half(i, 2), half(i, 3)])
+                as Box<dyn Fn(usize) -> Vec<f64>>,
+        ),
+        (
+            "alike",
+            Box::new(|i| {
+                vec![half(i, 1) / 3.0 + 100.5, half(i, 1) / 3.0 + 120.25, half(i, 1) / 4.0 + 90.0]
+            }),
+        ),
+        ("uniform", Box::new(|_| vec![127.5, 63.75, 0.0])),
+    ] {
+        let guess = guess(&table(&*color), true);
+        assert_eq!(meaning::listed(&guess.fields), "x y z red green blue", "{name}");
+        assert_eq!(guess.fields[3].kind, Type::F32, "{name}");
+        assert!(guess.note.unwrap().contains("the colour in columns 4 to 6"), "{name}");
+    }
+    // A number with fractions before or after a colour of whole ones.
+    let bytes = |i| vec![noise(i, 1), noise(i, 2), noise(i, 3)];
+    let found = taken(|i| [bytes(i), vec![half(i, 4)]].concat());
+    assert_eq!(found.0, "x y z red green blue intensity");
+    assert!(!found.1.unwrap().contains("could be the colour"));
+    assert_eq!(
+        taken(|i| [vec![half(i, 4)], bytes(i)].concat()).0,
+        "x y z intensity red green blue"
+    );
+    // Other measurements: little range, one below 0, one beyond 255.
+    let others = |last: fn(f64) -> f64| move |i| vec![half(i, 1), half(i, 2), last(half(i, 3))];
+    for last in [|x| x / 10.0, |x| x - 60.0, |x| 3.0 * x] as [fn(f64) -> f64; 3] {
+        assert_eq!(taken(others(last)).0, "x y z column_4 column_5 column_6");
+    }
 }

@@ -1,7 +1,6 @@
 //! Three columns that belong together: a colour, a normal.
 
 use crate::field::Type;
-use crate::guess::columns;
 use crate::guess::evidence::{Column, Evidence, LEAST_SHADES, Scale};
 
 /// A column of a colour in which all values are at most this is taken for something else where there
@@ -11,6 +10,11 @@ const DARK: f64 = 20.0;
 const BRIGHT: f64 = 128.0;
 /// Of more columns, too few rows show no colour.
 const MOST_OF_FEW_ROWS: usize = 12;
+/// Numbers from 0 to 255 with fractions are a colour only if each channel has a range of [`WIDE`], or if
+/// one reaches [`HALF`] and the sum of their three correlations is [`CLOSE`].
+const WIDE: f64 = 64.0;
+const HALF: f64 = 127.0;
+const CLOSE: f64 = 2.0;
 /// By how much the sum of three correlations must be larger to decide between two triples.
 const CORRELATED: f64 = 0.5;
 
@@ -111,7 +115,7 @@ impl Triples {
     pub(super) fn doubts(&self, evidence: &Evidence) -> Vec<String> {
         let mut doubts = Vec::new();
         if let Some(color) = self.color {
-            let place = columns(color.first, 3);
+            let place = evidence.columns_in_words(color.first, 3);
             match color.likeness {
                 Likeness::Uniform => {
                     doubts.push(format!("the colour in {place} is the same throughout"));
@@ -123,6 +127,9 @@ impl Triples {
                 Likeness::Varied if color.scale == Scale::Words => {
                     doubts.push(format!("the colour in {place} goes beyond 255"));
                 }
+                Likeness::Varied if color.scale == Scale::Averages => {
+                    doubts.push(format!("the colour in {place} has fractions"));
+                }
                 Likeness::Varied if color.scale == Scale::Fractions => {
                     doubts.push(format!("the colour in {place} is made of fractions"));
                 }
@@ -130,13 +137,14 @@ impl Triples {
             }
         }
         if let Some(rival) = self.rival {
-            doubts.push(format!("{} could be the colour, too", columns(rival, 3)));
+            doubts
+                .push(format!("{} could be the colour, too", evidence.columns_in_words(rival, 3)));
         }
         if let Some(first) = self.refused {
             doubts.push(format!(
                 "{} are from 0 to 255, but one has fewer than {LEAST_SHADES} different values, which \
                  is unlike a colour",
-                columns(first, 3)
+                evidence.columns_in_words(first, 3)
             ));
         }
         if evidence.few_rows() && (self.color.is_some() || self.normal.is_some()) {
@@ -149,12 +157,15 @@ impl Triples {
 /// How like a colour three columns are whose numbers have its range.
 fn likeness(evidence: &Evidence, first: usize, scale: Scale) -> Option<Likeness> {
     let three = evidence.three(first);
+    if scale == Scale::Averages {
+        return likeness_of_averages(evidence, three);
+    }
     if evidence.few_rows() {
         return (evidence.columns.len() <= MOST_OF_FEW_ROWS).then_some(Likeness::FewRows);
     }
     let (dark, bright) = match scale {
         Scale::Fractions => (0.0, 0.5),
-        Scale::Bytes | Scale::Words => (DARK, BRIGHT),
+        Scale::Bytes | Scale::Averages | Scale::Words => (DARK, BRIGHT),
     };
     let varied = |column: &&Column| column.distinct >= LEAST_SHADES;
     let brightest = three.iter().map(|column| column.max).fold(0.0, f64::max);
@@ -170,8 +181,26 @@ fn likeness(evidence: &Evidence, first: usize, scale: Scale) -> Option<Likeness>
     }
 }
 
+/// The same of numbers from 0 to 255 with fractions, which anything can be.
+fn likeness_of_averages(evidence: &Evidence, three: [&Column; 3]) -> Option<Likeness> {
+    let bright = three.iter().any(|column| column.max >= HALF);
+    if evidence.few_rows() {
+        return (bright && evidence.columns.len() == 6).then_some(Likeness::FewRows);
+    }
+    if three.iter().all(|column| column.is_constant()) {
+        return bright.then_some(Likeness::Uniform);
+    }
+    let varied = three.iter().all(|column| column.distinct >= LEAST_SHADES);
+    let wide = three.iter().all(|column| column.max - column.min >= WIDE);
+    (varied && (wide || (bright && together(three) >= CLOSE))).then_some(Likeness::Varied)
+}
+
 /// The colour among those that are possible, and another that is just as likely.
 fn choose(evidence: &Evidence, mut all: Vec<ColorTriple>) -> (Option<ColorTriple>, Option<usize>) {
+    // A number with fractions beside a colour of whole ones is something else.
+    if all.iter().any(|color| color.scale != Scale::Averages) {
+        all.retain(|color| color.scale != Scale::Averages);
+    }
     // A label or an opacity after a colour can pass for its last channel.
     let is_label = |place| evidence.is_label(place);
     let has_label = |color: &ColorTriple| (color.first..color.end()).any(is_label);

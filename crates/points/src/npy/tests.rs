@@ -388,6 +388,29 @@ fn lattices_of_values_are_no_points() {
     }
 }
 
+/// What may as well be something else is read, with a word.
+#[test]
+fn doubtful_shapes_are_noted() {
+    for (shape, expected) in [
+        ("(2, 4, 10, 3)", Some("lattice with 3 values at each node")),
+        ("(1, 1, 80, 3)", None),
+        ("(8, 10, 3)", None),
+        ("(4, 60)", Some("4 rows of 60 columns; if its columns are the points, save a.T")),
+        ("(80, 3)", None),
+        ("(3, 80)", None),
+    ] {
+        let bytes = npy("'<f4'", false, shape, &f4(&[0.5; 240]));
+        let notes = read_bytes(&bytes, Path::new("a.npy"), &ReadOptions::default()).unwrap().notes;
+        let found =
+            notes.iter().find(|note| expected.is_some_and(|expected| note.contains(expected)));
+        assert_eq!(found.is_some(), expected.is_some(), "{shape}: {notes:?}");
+        assert!(expected.is_some() || notes.is_empty(), "{shape}: {notes:?}");
+    }
+    let picture = npy("'|u1'", false, "(8, 10, 3)", &[7; 240]);
+    let set = read_bytes(&picture, Path::new("a.npy"), &ReadOptions::default()).unwrap();
+    assert!(set.notes[0].contains("8-bit integers is like a picture's"), "{:?}", set.notes);
+}
+
 /// By numbers and, of records, by names.
 #[test]
 fn columns_are_what_the_user_says() {

@@ -169,7 +169,7 @@ impl Find<'_> {
             }
             None if numbers.len() >= 3 => {
                 self.is_of_points(has_numbers)?;
-                let guess = guess::by_place(&sample, None);
+                let guess = guess::by_place(&sample, None, Some(&numbers));
                 let position = positions_of(&guess.fields);
                 // Between the coordinates of a point stands nothing else.
                 if position.is_some_and(|places| {
@@ -205,7 +205,7 @@ impl Find<'_> {
                 if numbers.len() < 3 {
                     return Err(self.no_table());
                 }
-                let guess = guess::by_place(&self.sample(&numbers), None);
+                let guess = guess::by_place(&self.sample(&numbers), None, Some(&numbers));
                 let mut fields: Vec<Field> =
                     all.iter().map(|name| Field::new(name, Type::F64)).collect();
                 for (place, field) in numbers.into_iter().zip(guess.fields) {

@@ -102,17 +102,39 @@ fn lists(comment: Numbered<'_>, separator: Separator) -> Vec<(Vec<String>, bool)
     };
     let texts: Vec<&[u8]> = std::iter::once(text).chain(without_title).collect();
     let mut lists = Vec::new();
-    for separator in separators {
-        for text in &texts {
-            let mut names = columns_of(separator, text);
-            let end = names.iter().position(|name| name.contains("[]") || name.ends_with("..."));
-            names.truncate(end.unwrap_or(names.len()));
-            if meaning::name_positions(names.iter().map(String::as_str)) {
-                lists.push((names, end.is_some()));
-            }
+    let by_separators =
+        separators.flat_map(|separator| texts.iter().map(move |text| columns_of(separator, text)));
+    let by_blanks = texts.iter().flat_map(|text| [by_wide_gaps(text), with_units(text)]);
+    for mut names in by_separators.chain(by_blanks) {
+        let end = names.iter().position(|name| name.contains("[]") || name.ends_with("..."));
+        names.truncate(end.unwrap_or(names.len()));
+        if meaning::name_positions(names.iter().map(String::as_str)) {
+            lists.push((names, end.is_some()));
         }
     }
     lists
+}
+
+/// Names between two blanks or more, or tabs; in each may be one blank.
+fn by_wide_gaps(text: &[u8]) -> Vec<String> {
+    let text = String::from_utf8_lossy(text).replace('\t', "  ");
+    let names = text.split("  ").map(str::trim).filter(|name| !name.is_empty());
+    names.map(str::to_owned).collect()
+}
+
+/// Names between blanks, each with its unit: `x y z T (K)`.
+fn with_units(text: &[u8]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for word in String::from_utf8_lossy(text).split_ascii_whitespace() {
+        match names.last_mut() {
+            Some(name) if word.starts_with(['(', '[']) && word.ends_with([')', ']']) => {
+                name.push(' ');
+                name.push_str(word);
+            }
+            _ => names.push(word.to_owned()),
+        }
+    }
+    names
 }
 
 /// The columns of an extended XYZ file, whose remark states them as

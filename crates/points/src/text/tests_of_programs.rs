@@ -273,3 +273,37 @@ fn columns_are_what_the_user_says() {
         assert!(found.contains(expected), "{found}");
     }
 }
+
+/// As COMSOL writes them: names with units, and names with blanks in them between wide gaps.
+#[test]
+fn comments_name_columns_with_units() {
+    let row = |_, [x, y, z]: [f64; 3]| format!("{x} {y} {z} 293.15 7");
+    for comment in [
+        "% x                       y                      z                 T (K)   p [Pa]",
+        "% X                       Y                      Z          comp1.T (K) @ t=0   p (Pa) @ t=1",
+        "% x y z T (K) p (Pa)",
+    ] {
+        let set = read(&format!("% Dimension: 3\n{comment}\n{}", rows(3, row)));
+        assert_eq!(set.positions[1], [4.5, 6.0, 7.5], "{comment}");
+        assert!(names(&set)[0].contains("T (K)"), "{comment}: {:?}", names(&set));
+        assert_eq!((names(&set).len(), set.notes.len()), (2, 0), "{comment}");
+    }
+}
+
+/// Columns of text count in the places that messages name and that `--columns` takes.
+#[test]
+fn points_may_have_names() {
+    let row = |i, [x, y, z]: [f64; 3]| {
+        format!("CP{i},{},{},{z},ROAD,{}", 4.6e6 + y, 5e5 + x, 0.5 * i as f64 * z)
+    };
+    let text = rows(20, row);
+    let set = read(&text);
+    assert_eq!(set.positions[1], [500_004.5, 4_600_006.0, 7.5]);
+    assert_eq!(names(&set), ["intensity"]);
+    assert!(
+        set.notes[0].contains("column 2 is like a northing and column 3 like an easting"),
+        "{:?}",
+        set.notes
+    );
+    assert_eq!(said(&text, "_,x,y,z").unwrap().positions[1], [4_600_006.0, 500_004.5, 7.5]);
+}
