@@ -170,7 +170,9 @@ fn stray_places(points: &[[f32; 3]]) -> (Vec<u32>, f64) {
     let mut gone = Gone { flags: vec![false; count], count: 0 };
     let mut measured: Vec<f64> = (0..MEASURED.min(count))
         .into_par_iter()
-        .map(|i| tree.around((i * count / MEASURED.min(count)) as u32, &gone).farthest)
+        .map(|i| {
+            tree.around((i * count / MEASURED.min(count)) as u32, &gone, f64::INFINITY).farthest
+        })
         .collect();
     measured.sort_unstable_by(f64::total_cmp);
     let median = measured[measured.len() / 2];
@@ -192,21 +194,27 @@ fn stray_places(points: &[[f32; 3]]) -> (Vec<u32>, f64) {
         sparse.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         sparse.truncate(SEARCHED);
     }
-    let mut left: Vec<u32> = sparse.into_iter().map(|(_, at)| at).collect();
+    sparse.sort_unstable_by_key(|&(_, at)| at);
+    let mut left: Vec<(u32, Around)> = sparse
+        .into_par_iter()
+        .map(|(bound, at)| (at, tree.around(at, &gone, bound)))
+        .filter(|(_, own)| own.farthest > enough)
+        .collect();
+    // The s of each: that of most is known, since what lies among sparse points is sparse.
+    let s_of = |own: &Around, left: &[(u32, Around)], gone: &Gone| match left
+        .binary_search_by_key(&own.last, |(at, _)| *at)
+    {
+        Ok(known) => left[known].1.farthest,
+        Err(_) => tree.around(own.last, gone, f64::INFINITY).farthest,
+    };
+    let mut s: Vec<f64> = left.par_iter().map(|(_, own)| s_of(own, &left, &gone)).collect();
     for _ in 0..ROUNDS {
-        let found: Vec<u32> = left
-            .par_iter()
-            .copied()
-            .filter(|&at| {
-                let own = tree.around(at, &gone);
-                let (r, d) = (own.farthest, own.nearest);
-                if r <= 4.0 * median {
-                    return false;
-                }
-                let s = tree.around(own.last, &gone).farthest;
-                (r > 8.0 * median && r > 10.0 * s) || d > 3.0 * s
-            })
-            .collect();
+        let is_stray = |&((_, own), &s): &(&(u32, Around), &f64)| {
+            let (r, d) = (own.farthest, own.nearest);
+            (r > 8.0 * median && r > 10.0 * s) || d > 3.0 * s
+        };
+        let found: Vec<u32> =
+            left.iter().zip(&s).filter(is_stray).map(|((at, _), _)| *at).collect();
         if found.is_empty() {
             break;
         }
@@ -217,7 +225,22 @@ fn stray_places(points: &[[f32; 3]]) -> (Vec<u32>, f64) {
         if gone.count > count / MOST || count - gone.count < FEWEST {
             return (Vec::new(), median);
         }
-        left.retain(|&at| !gone.flags[at as usize]);
+        // What those were near to is searched for anew.
+        let lost = |at: u32, reach: f64| {
+            let center = points[at as usize];
+            let reach = reach * reach * (1.0 + 1e-9);
+            found.iter().any(|&gone| square(points[gone as usize], center) <= reach)
+        };
+        let mut keep = left.iter().map(|(at, _)| !gone.flags[*at as usize]);
+        s.retain(|_| keep.next().unwrap_or_default());
+        left.retain(|(at, _)| !gone.flags[*at as usize]);
+        left.par_iter_mut().filter(|(at, own)| lost(*at, own.farthest)).for_each(|(at, own)| {
+            *own = tree.around(*at, &gone, f64::INFINITY);
+        });
+        s.par_iter_mut()
+            .zip(&left)
+            .filter(|(s, (at, own))| lost(own.last, **s) || lost(*at, own.farthest))
+            .for_each(|(s, (_, own))| *s = s_of(own, &left, &gone));
     }
     ((0..count as u32).filter(|&at| gone.flags[at as usize]).collect(), median)
 }
@@ -301,7 +324,9 @@ impl<'a> Boxes<'a> {
         Self { points, levels }
     }
 
-    fn around(&self, at: u32, gone: &Gone) -> Around {
+    /// What is around a point, of which it is known that enough others lie within `bound`.
+    fn around(&self, at: u32, gone: &Gone, bound: f64) -> Around {
+        let bound = bound * bound * (1.0 + 1e-9);
         let center = self.points[at as usize];
         let top = self.levels.len() - 1;
         // Nearest first: (square, place on the curve).
@@ -317,7 +342,7 @@ impl<'a> Boxes<'a> {
         push(&mut stack, top, 0..self.levels[top].len());
         while let Some((away, level, node)) = stack.pop() {
             let is_full = found.len() == NEIGHBORS;
-            if is_full && found.last().is_some_and(|worst| away > worst.0) {
+            if away > bound || (is_full && found.last().is_some_and(|worst| away > worst.0)) {
                 continue;
             }
             if level > 0 {
