@@ -20,6 +20,8 @@ const POSITION: [&[&str]; 3] = [
         "coord_x",
         "x_coord",
         "x_coordinate",
+        "xcoord",
+        "x_location",
         "px",
         "easting",
         "east",
@@ -39,6 +41,8 @@ const POSITION: [&[&str]; 3] = [
         "coord_y",
         "y_coord",
         "y_coordinate",
+        "ycoord",
+        "y_location",
         "py",
         "northing",
         "north",
@@ -56,12 +60,15 @@ const POSITION: [&[&str]; 3] = [
         "coord_z",
         "z_coord",
         "z_coordinate",
+        "zcoord",
+        "z_location",
         "pz",
         "elevation",
         "elev",
         "height",
         "altitude",
         "alt",
+        "ele",
         "h",
     ],
 ];
@@ -87,7 +94,7 @@ const FRAMES: [&str; 12] = [
     "m",
 ];
 /// Names of the three numbers of a colour.
-const COLOR: [[&str; 3]; 12] = [
+const COLOR: [[&str; 3]; 14] = [
     ["red", "green", "blue"],
     ["r", "g", "b"],
     ["rf", "gf", "bf"],
@@ -96,6 +103,8 @@ const COLOR: [[&str; 3]; 12] = [
     ["color_red", "color_green", "color_blue"],
     ["colour_r", "colour_g", "colour_b"],
     ["colour_red", "colour_green", "colour_blue"],
+    ["colorr", "colorg", "colorb"],
+    ["scalar_r", "scalar_g", "scalar_b"],
     ["rgb_r", "rgb_g", "rgb_b"],
     ["rgb_0", "rgb_1", "rgb_2"],
     ["color_0", "color_1", "color_2"],
@@ -319,14 +328,20 @@ pub(crate) fn by_names(names: &[String], kinds: Option<&[Type]>, sample: &Sample
     rest.collect()
 }
 
-/// A name without what exporters add to it: `"X [m]"`, `//X`, `Points:0` and `Normal.X` become `x`,
-/// `x`, `points_0` and `normal_x`.
+/// A name without what exporters add to it: `"X [m]"`, `//X`, `Points:0`, `Normal.X` and `Position[X]
+/// (m)` become `x`, `x`, `points_0`, `normal_x` and `position_x`.
 pub(crate) fn plain(name: &str) -> String {
-    let name = name.trim().trim_start_matches(['/', '#', '%']).trim().to_lowercase();
+    let name = name.trim().trim_start_matches(['/', '#', '%']).trim().trim_matches('\'');
+    let name = name.to_lowercase();
     let unit = name.strip_suffix([')', ']']).and_then(|rest| rest.rfind(['(', '[']));
     let name = match unit {
         Some(start) if start > 0 => &name[..start],
         _ => &name,
+    };
+    // An index or a component, where a unit followed.
+    let name = match name.trim().strip_suffix(']').and_then(|rest| rest.split_once('[')) {
+        Some((name, of)) if !name.is_empty() => format!("{name}_{of}"),
+        _ => name.to_owned(),
     };
     let joined = name.trim().replace([' ', '.', ':', '-'], "_");
     joined.trim_matches('_').to_owned()
@@ -365,6 +380,9 @@ mod tests {
             ["Easting", "Northing", "Elevation", "Red", "Green", "Blue"],
             ["Points:0", "Points:1", "Points:2", "RGB:0", "RGB:1", "RGB:2"],
             ["X [m]", "Y [m]", "Z [m]", "Color.R", "Color.G", "Color.B"],
+            ["Position[X] (m)", "Position[Y] (m)", "Position[Z] (m)", "'r'", "'g'", "'b'"],
+            ["X Location (m)", "Y Location (m)", "Z Location (m)", "colorR", "colorG", "colorB"],
+            ["lon", "lat", "ele", "scalar_R", "scalar_G", "scalar_B"],
         ] {
             assert_eq!(named(&names, &row), expected, "{names:?}");
         }

@@ -230,16 +230,10 @@ impl<'a> Head<'a> {
             // A name that was taken from the preamble is none.
             (self.names_line, self.declared) = (None, None);
             let above = &contents[..first];
-            let passed_over = match above.split_last() {
-                Some((last, others))
-                    if is_names(last.text, contents[first].text)
-                        && has_as_many(last.text, contents[first].text) =>
-                {
-                    self.names_line = Some(*last);
-                    others
-                }
-                _ => above,
-            };
+            let names = names_above(contents, first);
+            self.names_line = names.map(|names| contents[names]);
+            let passed_over = (0..).zip(above).filter(|&(place, _)| Some(place) != names);
+            let passed_over = passed_over.map(|(_, line)| line);
             self.passed_over.extend(passed_over);
             rest = &contents[first..];
         }
@@ -292,14 +286,28 @@ fn has_as_many(names: &[u8], row: &[u8]) -> bool {
     names == columns || (names >= 3 && names + 1 == columns)
 }
 
+/// The place of the line of names above a row, between which another line may have the units.
+fn names_above(contents: &[Numbered<'_>], row: usize) -> Option<usize> {
+    let row_text = contents[row].text;
+    let fit = |place: &usize| {
+        let line = contents[*place].text;
+        is_names(line, row_text) && has_as_many(line, row_text)
+    };
+    let last = row.checked_sub(1).filter(fit)?;
+    let positions = |place: &usize| names_positions(contents[*place].text, row_text);
+    let above_units = || last.checked_sub(1).filter(fit).filter(positions);
+    if positions(&last) { Some(last) } else { above_units().or(Some(last)) }
+}
+
 /// The first row of a table that begins after other lines: below names of x, y and z, or one that
 /// goes on to the end.
 fn below_a_preamble(contents: &[Numbered<'_>]) -> Option<usize> {
     let row = |place: usize| contents.get(place).filter(|line| is_row(line.text));
     let below_names = (1..contents.len().min(MOST_ABOVE)).find(|&place| {
-        let names = contents[place - 1].text;
-        row(place)
-            .is_some_and(|row| names_positions(names, row.text) && has_as_many(names, row.text))
+        row(place).is_some_and(|row| {
+            names_above(contents, place)
+                .is_some_and(|names| names_positions(contents[names].text, row.text))
+        })
     });
     below_names.or_else(|| {
         let first = (1..contents.len().min(MOST_ABOVE)).find(|&place| {

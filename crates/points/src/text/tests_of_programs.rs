@@ -307,3 +307,12 @@ fn points_may_have_names() {
     );
     assert_eq!(said(&text, "_,x,y,z").unwrap().positions[1], [4_600_006.0, 500_004.5, 7.5]);
 }
+
+/// Units in a line of their own, below the names.
+#[test]
+fn units_may_stand_below_names() {
+    let row = |_, [x, y, z]: [f64; 3]| format!("{x},{y},{z},293.15");
+    let set = read(&format!("X,Y,Z,T\nm,m,m,K\n{}", rows(3, row)));
+    assert_eq!((set.positions[1], names(&set)), ([4.5, 6.0, 7.5], vec!["T"]));
+    assert_eq!(set.notes, ["line 2 is not part of the table, and passed over"]);
+}
