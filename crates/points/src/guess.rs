@@ -164,6 +164,23 @@ impl Guesser<'_> {
     }
 }
 
+/// What to note where columns that would be taken for a colour keep no name, for the user names others.
+/// `fields` are those of the guess, and `names` those that the same columns get.
+pub(crate) fn unnamed_color(fields: &[Field], names: &[&str]) -> Option<String> {
+    let is_red = |field: &Field| field.name == RED[0];
+    let nameless = |name: &&str| name.starts_with("column_");
+    let first = fields.iter().position(is_red)?;
+    let three = names.get(first..first + 3)?;
+    if !three.iter().all(nameless) {
+        return None;
+    }
+    Some(format!(
+        "{} are like a colour, but have no names in the list of columns; name them red, green and blue, \
+         or _ to pass them over",
+        three.join(", ")
+    ))
+}
+
 /// The note of a guess; none for a plain position, and none for a position with a colour or a normal
 /// that is certain.
 fn note(fields: &[Field], doubts: &[String], evidence: &Evidence, certain: bool) -> Option<String> {

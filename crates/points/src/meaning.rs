@@ -355,9 +355,9 @@ pub(crate) fn name_positions<'a>(names: impl Iterator<Item = &'a str>) -> bool {
 /// The fields as they are listed in a set's `format`.
 pub(crate) fn listed(fields: &[Field]) -> String {
     const MOST: usize = 12;
-    let names: Vec<&str> = fields.iter().take(MOST).map(|field| field.name.as_str()).collect();
-    let more = if fields.len() > MOST { " …" } else { "" };
-    names.join(" ") + more
+    let names = || fields.iter().map(|field| field.name.as_str()).filter(|name| !name.is_empty());
+    let more = if names().count() > MOST { " …" } else { "" };
+    names().take(MOST).collect::<Vec<_>>().join(" ") + more
 }
 
 #[cfg(test)]

@@ -109,7 +109,7 @@ pub(super) fn find(
     let find = Find { head: &head, separator, comma, path };
     let fields = match columns.is_empty() {
         true => find.fields(names.as_ref(), &has_numbers, &mut notes)?,
-        false => find.said(columns, names.as_ref(), &mut has_numbers)?,
+        false => find.said(columns, names.as_ref(), &mut has_numbers, &mut notes)?,
     };
     let left_out: Vec<String> = (names.iter().flat_map(|names| &names.names).zip(&has_numbers))
         .filter(|(_, read)| !**read)
@@ -192,6 +192,7 @@ impl Find<'_> {
         columns: &Columns,
         names: Option<&Names>,
         has_numbers: &mut [bool],
+        notes: &mut Vec<String>,
     ) -> Result<Vec<Field>, PointsError> {
         let all: Vec<String> = match names {
             Some(names) => names.names.clone(),
@@ -215,6 +216,13 @@ impl Find<'_> {
             }
         };
         let renamed = columns.renamed(&all, self.path)?;
+        let before = places_of(has_numbers);
+        if names.is_none() && before.len() >= 6 {
+            let guess = guess::by_place(&self.sample(&before), None, Some(&before));
+            let names: Vec<&str> =
+                before.iter().map(|&place| renamed[place].as_deref().unwrap_or("")).collect();
+            notes.extend(guess::unnamed_color(&guess.fields, &names));
+        }
         for (place, name) in renamed.iter().enumerate() {
             match name {
                 None => has_numbers[place] = false,

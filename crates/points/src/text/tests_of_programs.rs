@@ -316,3 +316,25 @@ fn units_may_stand_below_names() {
     assert_eq!((set.positions[1], names(&set)), ([4.5, 6.0, 7.5], vec!["T"]));
     assert_eq!(set.notes, ["line 2 is not part of the table, and passed over"]);
 }
+
+/// Whoever names only a label does not mean to lose the colour.
+#[test]
+fn colours_without_names_are_noted() {
+    let row = |i: usize, [x, y, z]: [f64; 3]| {
+        format!("{x} {y} {z} {} {} {} {}", i * 37 % 256, i * 53 % 256, i * 71 % 256, i % 3)
+    };
+    let text = rows(40, row);
+    let set = said(&text, "x,y,z,_,_,_,classification").unwrap();
+    assert_eq!((names(&set), set.notes.len()), (vec!["classification"], 0));
+    assert_eq!(said(&text, "x,y,z,red,green,blue").unwrap().notes, [""; 0]);
+    let number = |name: &str, place| (name.to_owned(), Column::Number(place));
+    let label = Columns { named: vec![number("classification", 7)], left_out: vec![] };
+    let set = read_as(&text, label).unwrap();
+    assert!(set.colors.is_none());
+    assert!(
+        set.notes[0]
+            .starts_with("column_4, column_5, column_6 are like a colour, but have no names"),
+        "{:?}",
+        set.notes
+    );
+}
