@@ -46,10 +46,8 @@ impl Bulk {
         let mut found = Vec::new();
         let mut done = 0;
         for world in all {
-            if watch.interrupted() {
-                return Err(PlanError::Interrupted);
-            }
-            found.push(Strays::find(world, origin));
+            let strays = Strays::find_watched(world, origin, watch, done);
+            found.push(strays.ok_or(PlanError::Interrupted)?);
             done += world.len() as u64;
             watch.done(done);
         }

@@ -225,6 +225,12 @@ impl<'a> Collector<'a> {
         Ok(())
     }
 
+    /// No point of the file had a colour, although the fields have one.
+    pub(crate) fn without_colors(&mut self) {
+        self.hand_over();
+        (self.color, self.set.colors) = (None, None);
+    }
+
     /// Points of the file that were kept.
     pub(crate) fn kept(&self) -> u64 {
         self.handed_over + self.set.positions.len() as u64

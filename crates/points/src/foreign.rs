@@ -42,7 +42,7 @@ const RASTER: &str = "make points of it: gdal_translate -of XYZ in.tif out.xyz";
 const TABLE: &str = "save the table as CSV, with pandas or the program that wrote it";
 const ROBOT: &str = "write one message of points to a PCD file, with ROS or Foxglove's tools";
 const PICTURE: &str = "name a point file; a depth map must be turned into points first";
-const UNPACK: &str = "unpack it and open the point file inside";
+pub(crate) const UNPACK: &str = "unpack it and open the point file inside";
 const PARAVIEW: &str = "open it in ParaView and save the data as VTU or VTP";
 const TILES: &str = "write its points to one file: pdal translate in out.laz, or CloudCompare";
 
@@ -236,6 +236,14 @@ impl Foreign {
 pub(crate) fn by_contents(start: &[u8], name: &Path) -> Option<&'static Foreign> {
     let fit = || FOREIGN.iter().filter(|row| row.looks.fit(start));
     fit().find(|row| row.is_called(name)).or_else(|| fit().find(|row| row.looks.is_clear()))
+}
+
+/// The row of a zip archive with these files, where they tell it.
+pub(crate) fn of_archive<S: AsRef<str>>(names: &[S]) -> Option<&'static Foreign> {
+    let has = |end: &str| names.iter().any(|name| name.as_ref().ends_with(end));
+    let is_splat = has("meta.json") && has(".webp");
+    let row = |name: &str| FOREIGN.iter().find(|row| row.is_called(Path::new(name)));
+    if is_splat { row("a.sog") } else { None }
 }
 
 /// A file that neither begins like a format that is read nor is called so.

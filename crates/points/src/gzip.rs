@@ -6,10 +6,10 @@
 use crate::columns::is_too_large;
 use crate::error::PointsError;
 use crate::source::Source;
-use flate2::read::MultiGzDecoder;
+use flate2::bufread::GzDecoder;
 use std::cell::Cell;
 use std::fmt;
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -30,9 +30,48 @@ pub(crate) fn inner_name(path: &Path) -> PathBuf {
 /// What is packed in a file, from its beginning.
 pub(crate) fn unpacked(source: Source<'_>) -> Source<'_> {
     source.through(|packed, read, length| {
-        let reader = MultiGzDecoder::new(BufReader::with_capacity(BUFFER, packed));
-        Box::new(Unpacked { reader, unpacked: 0, read, length })
+        let packed = BufReader::with_capacity(BUFFER, packed);
+        Box::new(Unpacked { reader: Members::new(packed), unpacked: 0, read, length })
     })
+}
+
+/// What is packed in several parts, one after the other. Zeros after the last, with which tapes and some programs
+/// fill blocks, are passed over, as gunzip does.
+struct Members<R> {
+    /// `None` at the end.
+    member: Option<GzDecoder<R>>,
+}
+
+impl<R: BufRead> Members<R> {
+    fn new(packed: R) -> Self {
+        Self { member: Some(GzDecoder::new(packed)) }
+    }
+}
+
+impl<R: BufRead> Read for Members<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        while let Some(member) = &mut self.member {
+            let count = member.read(buffer)?;
+            if count > 0 || buffer.is_empty() {
+                return Ok(count);
+            }
+            let Some(mut packed) = self.member.take().map(GzDecoder::into_inner) else { break };
+            loop {
+                let there = packed.fill_buf()?;
+                let zeros = there.iter().take_while(|&&byte| byte == 0).count();
+                if there.is_empty() {
+                    break;
+                }
+                if zeros < there.len() {
+                    packed.consume(zeros);
+                    self.member = Some(GzDecoder::new(packed));
+                    break;
+                }
+                packed.consume(zeros);
+            }
+        }
+        Ok(0)
+    }
 }
 
 /// Unpacked bytes, as long as they are not too many.
@@ -152,6 +191,9 @@ mod tests {
         // Several, one after the other, are one.
         let set = try_read(&[packed(b"1 2 3\n"), packed(b"4 5 6\n")].concat(), "a.xyz.gz").unwrap();
         assert_eq!(set.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+        // So are zeros after them, as in a block of a tape.
+        let padded = [packed(b"1 2 3\n"), vec![0; 1000]].concat();
+        assert_eq!(try_read(&padded, "a.xyz.gz").unwrap().len(), 1);
         // What is read from several places is held.
         let npy = include_bytes!("../tests/data/numpy-fields.npy");
         assert_eq!(try_read(&packed(npy), "a.npy.gz").unwrap().len(), 5);
@@ -167,6 +209,8 @@ mod tests {
         let end = sum.len();
         sum[end - 8] ^= 1;
         assert!(message(&sum).contains("damaged or cut off"), "{}", message(&sum));
+        let more = message(&[&whole[..], b"more"].concat());
+        assert!(more.contains("as the packed bytes"), "{more}");
         let inner = message(&packed(&whole));
         assert!(inner.contains("found a gzip file in a gzip file"), "{inner}");
         assert!(message(&packed(b"")).contains("the file is empty"));

@@ -14,7 +14,7 @@ mod laz;
 mod record;
 
 use crate::collect::Collector;
-use crate::error::PointsError;
+use crate::error::{PointsError, Quoted};
 use crate::field::Type;
 use crate::options::ReadOptions;
 use crate::set::PointSet;
@@ -39,6 +39,10 @@ const GLOBAL_ENCODING: u64 = 6;
 const WKT_COUNTS: u8 = 1 << 4;
 
 const EXPORT: &str = "the file is damaged: copy or export it again";
+/// Of what has the name of a LAS file only.
+const OTHER: &str = "give the file the extension of what it is, or export it again";
+/// Of a file whose writer did not come to its end.
+const UNFINISHED: &str = "the program that wrote it did not finish: export it again, or have the header repaired (lasinfo -repair)";
 /// Of what others read.
 const CONVERT: &str = "convert it to LAS 1.4, for example with PDAL or las2las";
 
@@ -90,10 +94,20 @@ pub(crate) fn read(
         .collect::<Result<_, _>>()
         .map_err(io_error)?;
     let extra = extra::of_records(&described, known, header.record_length.into());
+    let unread = usize::from(header.record_length) - known - extra::bytes_of(&extra);
     let layout = record::Layout::new(&header, extra);
 
     let mut collector = Collector::new(layout.fields(), path, options)?;
     let mut notes = Vec::new();
+    if unread > 0 {
+        notes.push(format!(
+            "{unread} extra bytes of each point are left out, since no record of the file describes them as numbers"
+        ));
+    }
+    if header.scale[2] == 0.0 {
+        let height = header.offset[2];
+        notes.push(format!("the scale factor of z is 0, so all points have the height {height}"));
+    }
     let prefers_text = file.bytes_at(GLOBAL_ENCODING, 2).map_err(io_error)?[0] & WKT_COUNTS != 0;
     if let Some(system) = crs::of(&mut file, &records, prefers_text).map_err(io_error)? {
         notes.extend(system.doubts());
@@ -107,6 +121,14 @@ pub(crate) fn read(
         collector.expect(header.points.min(left))?;
     } else {
         let there = left / u64::from(header.record_length);
+        if header.points == 0
+            && there > 0
+            && header.extended.1 == 0
+            && !matches!(header.format, 4 | 5)
+        {
+            let expected = format!("the count of those in the {left} bytes that follow");
+            return Err(PointsError::wrong(path, "the number of points", 0, &expected, UNFINISHED));
+        }
         if there < header.points {
             return Err(header.cut_off(there, Some(left), path));
         }
@@ -181,6 +203,17 @@ impl Header {
         let wrong = |place: &str, found: String, expected: &str| {
             PointsError::wrong(path, place, found, expected, EXPORT)
         };
+        let sign = file.bytes_at(0, file.length().min(4)).map_err(io_error)?;
+        if !sniff(&sign) {
+            let found = format!("bytes that begin with {}", Quoted(&sign));
+            return Err(PointsError::wrong(
+                path,
+                "the file",
+                found,
+                "LASF, as LAS and LAZ begin",
+                OTHER,
+            ));
+        }
         if file.length() < HEADER {
             let found = format!("{} bytes", file.length());
             return Err(wrong("the file", found, "a LAS header of 227 bytes"));
@@ -235,6 +268,9 @@ impl Header {
             if !values.iter().all(|value| value.is_finite()) {
                 return Err(wrong(name, format!("{values:?}"), "finite numbers"));
             }
+        }
+        if scale[0] == 0.0 || scale[1] == 0.0 {
+            return Err(wrong("the scale factors", format!("{scale:?}"), "numbers other than 0"));
         }
         let extended = if is_1_4 { (u64_at(235), u32_at(243)) } else { (0, 0) };
         Ok(Self {

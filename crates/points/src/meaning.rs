@@ -166,6 +166,11 @@ pub(crate) struct Sample {
 pub(crate) const SAMPLE_ROWS: usize = 1000;
 
 impl Sample {
+    /// Rows of so many floats.
+    pub(crate) fn of_columns(columns: usize, values: Vec<f64>) -> Self {
+        Self { columns, values, floats: vec![true; columns] }
+    }
+
     pub(crate) fn column(&self, place: usize) -> impl Iterator<Item = f64> + '_ {
         self.values.iter().skip(place).step_by(self.columns.max(1)).copied()
     }

@@ -47,6 +47,10 @@ pub(crate) fn read(
 ) -> Result<PointSet, PointsError> {
     let io_error = |source| PointsError::Io { path: path.into(), source };
     let mut sample = sample(source.fill(SAMPLE).map_err(io_error)?);
+    if !source.can_rewind() && matches!(sample.columns, 3 | 4) {
+        // Colours may come later, and there is no way back then.
+        sample = Sample::of_columns(sample.columns + 3, Vec::new());
+    }
     loop {
         match read_as(&mut source, &sample, path, options) {
             // The first megabyte was without the colours that came then.
@@ -54,8 +58,7 @@ pub(crate) fn read(
                 if let Some(outlet) = &options.outlet {
                     outlet.begin_again();
                 }
-                let row = first.0;
-                sample = Sample { columns: row.len(), floats: vec![true; row.len()], values: row };
+                sample = Sample::of_columns(first.0.len(), first.0);
             }
             Err(Failed::FirstColor(first)) => return Err(first.1),
             Err(Failed::Points(error)) => return Err(error),
@@ -137,6 +140,9 @@ fn read_as(
             help: "export the points as vertices",
         };
         return Err(error.into());
+    }
+    if uncolored_count == vertices {
+        collector.without_colors();
     }
     let mut set = collector.finish("OBJ")?;
     give_no_color(&mut set, &uncolored, uncolored_count, vertices);
@@ -253,8 +259,7 @@ fn sample(start: &[u8]) -> Sample {
             continue;
         }
         if sample.columns == 0 || (sample.columns < 5 && row.len() == sample.columns + 3) {
-            sample =
-                Sample { columns: row.len(), floats: vec![true; row.len()], ..Sample::default() };
+            sample = Sample::of_columns(row.len(), Vec::new());
             rows = 0;
         }
         if row.len() == sample.columns {
@@ -389,6 +394,17 @@ mod tests {
             let set = read(text);
             assert_eq!(set.positions, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]], "{text:?}");
             assert_eq!(set.format, "OBJ");
+        }
+    }
+
+    #[test]
+    fn colors_that_come_late_are_read_from_a_stream_too() {
+        let plain = "v 1 2 3\n".repeat(200_000);
+        for text in [plain.clone() + "v 1 2 3 1 0 0.5\n", plain, "v 1 2 3 1\n".to_owned()] {
+            let progress: &mut dyn FnMut(u64, u64) = &mut |_, _| ();
+            let stream = Source::of_stream(text.as_bytes(), progress);
+            let set = super::read(stream, Path::new("a.obj"), &ReadOptions::default()).unwrap();
+            assert!(set == read(&text), "{:?} {:?}", set.notes, set.color_encoding);
         }
     }
 

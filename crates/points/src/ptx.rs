@@ -53,7 +53,9 @@ pub(crate) fn read(
     options: &ReadOptions,
 ) -> Result<PointSet, PointsError> {
     let io_error = |source| PointsError::Io { path: path.into(), source };
-    match Scans::read(&mut source, path, options, false) {
+    // Where there is no way back, colours are expected from the beginning on.
+    let colored = !source.can_rewind();
+    match Scans::read(&mut source, path, options, colored) {
         // A scan with colours after others without.
         Err(Failed::FirstColor(error)) => match source.rewind().map_err(io_error)? {
             true => {
@@ -94,7 +96,8 @@ struct Scans<'s, 'a> {
     lines: Lines<'s, 'a>,
     path: &'s Path,
     row: Vec<f64>,
-    /// Points without a colour among others with one.
+    /// Whether any point has a colour, and how many have none.
+    has_colors: bool,
     uncolored: u64,
     notes: Vec<String>,
 }
@@ -116,7 +119,8 @@ impl<'s, 'a> Scans<'s, 'a> {
         colored: bool,
     ) -> Result<PointSet, Failed> {
         let lines = Lines::new(source, path)?;
-        let mut scans = Self { lines, path, row: Vec::new(), uncolored: 0, notes: Vec::new() };
+        let (row, notes) = (Vec::new(), Vec::new());
+        let mut scans = Self { lines, path, row, has_colors: false, uncolored: 0, notes };
         let mut collector: Option<Collector<'_>> = None;
         let mut has_color = colored;
         let mut count = 0;
@@ -125,6 +129,7 @@ impl<'s, 'a> Scans<'s, 'a> {
             for index in 0..head.points {
                 scans.point(&head, index, count)?;
                 let with_color = scans.row.len() == 7;
+                scans.has_colors |= with_color;
                 let collector = match &mut collector {
                     Some(collector) => collector,
                     None => {
@@ -153,10 +158,13 @@ impl<'s, 'a> Scans<'s, 'a> {
                 collector.push(&scans.row)?;
             }
         }
-        let collector = match collector {
+        let mut collector = match collector {
             Some(collector) => collector,
             None => Collector::new(&fields(false), path, options)?,
         };
+        if !scans.has_colors {
+            collector.without_colors();
+        }
         let of_scans = if count == 1 { String::new() } else { format!(", {count} scans") };
         let mut set = collector.finish(&format!("PTX{of_scans}"))?;
         if scans.uncolored > 0 && set.colors.is_some() {
@@ -326,6 +334,22 @@ mod tests {
             assert_eq!(set.colors.unwrap(), order.map(|place| colors[place]));
             assert_eq!((set.invalid, set.format.as_str()), (1, "PTX, 2 scans"));
             assert!(set.notes[0].starts_with("1 points have no colour"), "{:?}", set.notes);
+        }
+    }
+
+    /// What is packed or comes through a pipe has no way back to where colours were not expected.
+    #[test]
+    fn colors_that_come_late_are_read_from_a_stream_too() {
+        let colored = scan("1 0 0 1 255 0 0\n0 1 0 0.5 0 255 0\n");
+        let plain = scan("0 0 1 0\n0 0 0 0.5\n");
+        for text in [plain.clone() + &colored, colored, plain.clone() + &plain] {
+            let progress: &mut dyn FnMut(u64, u64) = &mut |_, _| ();
+            let stream = Source::of_stream(text.as_bytes(), progress);
+            let set = read(stream, Path::new("a.ptx"), &ReadOptions::default()).unwrap();
+            assert!(
+                set == try_read(&text, "a.ptx").map(|of| PointSet { up: None, ..of }).unwrap(),
+                "{text}"
+            );
         }
     }
 

@@ -135,6 +135,11 @@ impl<'a> Source<'a> {
         Self { before, packed: Some((read, length)), ..unpacked }
     }
 
+    /// Whether [`rewind`](Self::rewind) can go back to the beginning: not in what is unpacked or a pipe.
+    pub(crate) fn can_rewind(&self) -> bool {
+        matches!(self.file, Bytes::File(_))
+    }
+
     /// Goes back to the beginning, and says whether it can.
     pub(crate) fn rewind(&mut self) -> io::Result<bool> {
         let Bytes::File(file) = &mut self.file else { return Ok(false) };

@@ -17,12 +17,15 @@
 //! grids and terrains has a stray, the airborne scan 3 of 110 000, the terrestrial scan 65 of 518 862.
 
 mod apart;
+mod boxes;
 
 pub use apart::Apart;
 pub(crate) use apart::{filter, size_of};
 
 use crate::cloud::{bounds_of, middle};
 use crate::curve::{is_copy, sort_along_curve};
+use crate::strays::boxes::{Around, Boxes, EMPTY, join};
+use crate::watch::{Unwatched, Watch};
 use kernels::layout::Point;
 use rayon::prelude::*;
 
@@ -46,6 +49,9 @@ const ROUNDS: usize = 16;
 const FARTHEST_SEEN: f64 = 1e30;
 /// Points that one thread takes at once.
 const PART: usize = 1 << 12;
+/// Points that are looked at, and searches that are made, before progress is shown.
+const SHOWN: usize = 1 << 20;
+const SEARCHES_SHOWN: usize = 1 << 14;
 
 /// The strays of one set of points.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,6 +75,23 @@ impl Strays {
     /// Without points, or with more than 2³².
     #[must_use]
     pub fn find(positions: &[[f64; 3]], origin: [f64; 3]) -> Self {
+        let found = Self::find_watched(positions, origin, &Unwatched, 0);
+        found.unwrap_or_else(|| unreachable!("nobody asks for an end"))
+    }
+
+    /// As [`find`](Self::find), in a stage of `watch` of which `before` points are done; `None` where it asks for an
+    /// end.
+    ///
+    /// # Panics
+    /// As [`find`](Self::find).
+    #[must_use]
+    pub fn find_watched(
+        positions: &[[f64; 3]],
+        origin: [f64; 3],
+        watch: &dyn Watch,
+        before: u64,
+    ) -> Option<Self> {
+        let steps = Steps { watch, before, points: positions.len() as u64 };
         assert!(u32::try_from(positions.len()).is_ok(), "places are of 32 bits");
         let local: Vec<Point> = positions
             .par_iter()
@@ -81,14 +104,16 @@ impl Strays {
             })
             .collect();
         let mut on_curve: Vec<(u64, u32)> = (0..local.len() as u32).map(|i| (0, i)).collect();
+        steps.reach(PLACED)?;
         sort_along_curve(&local, &mut on_curve);
+        steps.reach(SORTED)?;
         let order: Vec<u32> = on_curve.par_iter().map(|&(_, place)| place).collect();
         let position = |place: &u32| local[*place as usize].position;
         let mut on_curve: Vec<[f32; 3]> =
             order.par_iter().with_min_len(PART).map(position).collect();
         // Of points at one position, the first.
         on_curve.dedup_by(|b, a| is_copy(*a, *b));
-        let (stray, reach) = stray_places(&on_curve);
+        let (stray, reach) = stray_places(&on_curve, &steps)?;
         let mut places = Vec::new();
         if !stray.is_empty() {
             let found: Vec<[f32; 3]> = stray.iter().map(|&at| on_curve[at as usize]).collect();
@@ -100,7 +125,7 @@ impl Strays {
         let mut strays = Self { places, bulk, farthest: 0.0, reach, order };
         let distances = strays.places.iter().map(|&at| strays.distance(&positions[at as usize]));
         strays.farthest = distances.fold(0.0, f64::max);
-        strays
+        Some(strays)
     }
 
     /// How far a point lies from the box around the bulk; 0 inside.
@@ -160,11 +185,32 @@ fn bulk_of(positions: &[[f64; 3]], left_out: &[u32]) -> [[f64; 3]; 2] {
     bounds_of(runs).unwrap_or_default()
 }
 
+/// Shares of the time after which points are placed, sorted, and their surroundings bounded, measured with ten
+/// million; the rest is searches.
+const PLACED: f64 = 0.05;
+const SORTED: f64 = 0.6;
+const BOUNDED: f64 = 0.9;
+
+/// Shows how far the search for strays is.
+struct Steps<'a> {
+    watch: &'a dyn Watch,
+    before: u64,
+    points: u64,
+}
+
+impl Steps<'_> {
+    /// This share of the work is done; `None` where an end is asked for.
+    fn reach(&self, share: f64) -> Option<()> {
+        self.watch.done(self.before + (share * self.points as f64) as u64);
+        (!self.watch.interrupted()).then_some(())
+    }
+}
+
 /// Which of some distinct positions along a curve are stray, ascending, and the median of r.
-fn stray_places(points: &[[f32; 3]]) -> (Vec<u32>, f64) {
+fn stray_places(points: &[[f32; 3]], steps: &Steps<'_>) -> Option<(Vec<u32>, f64)> {
     let count = points.len();
     if count < FEWEST {
-        return (Vec::new(), 0.0);
+        return Some((Vec::new(), 0.0));
     }
     let tree = Boxes::new(points);
     let mut gone = Gone { flags: vec![false; count], count: 0 };
@@ -182,24 +228,34 @@ fn stray_places(points: &[[f32; 3]]) -> (Vec<u32>, f64) {
         let [low, high] = run.iter().map(|&p| [p, p]).fold(EMPTY, join);
         run.len() > NEIGHBORS && square(low, high) <= enough * enough
     };
-    let mut sparse: Vec<(f64, u32)> = (0..count.div_ceil(RUN))
-        .into_par_iter()
-        .with_min_len(PART / RUN)
-        .map(|run| run * RUN..count.min((run + 1) * RUN))
-        .filter(|run| !is_dense(&points[run.clone()]))
-        .flat_map_iter(|run| run.map(|at| (bound_of(points, at, enough), at as u32)))
-        .filter(|(bound, _)| *bound > enough)
-        .collect();
+    let runs = count.div_ceil(RUN);
+    let mut sparse: Vec<(f64, u32)> = Vec::new();
+    for first in (0..runs).step_by(SHOWN / RUN) {
+        let some = (first..runs.min(first + SHOWN / RUN)).into_par_iter();
+        sparse.par_extend(
+            some.with_min_len(PART / RUN)
+                .map(|run| run * RUN..count.min((run + 1) * RUN))
+                .filter(|run| !is_dense(&points[run.clone()]))
+                .flat_map_iter(|run| run.map(|at| (bound_of(points, at, enough), at as u32)))
+                .filter(|(bound, _)| *bound > enough),
+        );
+        steps.reach(SORTED + (BOUNDED - SORTED) * (first as f64 / runs as f64))?;
+    }
     if sparse.len() > SEARCHED {
         sparse.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         sparse.truncate(SEARCHED);
     }
     sparse.sort_unstable_by_key(|&(_, at)| at);
-    let mut left: Vec<(u32, Around)> = sparse
-        .into_par_iter()
-        .map(|(bound, at)| (at, tree.around(at, &gone, bound)))
-        .filter(|(_, own)| own.farthest > enough)
-        .collect();
+    let mut left: Vec<(u32, Around)> = Vec::new();
+    for (few, done) in sparse.chunks(SEARCHES_SHOWN).zip((0..).step_by(SEARCHES_SHOWN)) {
+        left.par_extend(
+            few.par_iter()
+                .map(|&(bound, at)| (at, tree.around(at, &gone, bound)))
+                .filter(|(_, own)| own.farthest > enough),
+        );
+        // Later rounds are rare, and stand at the end.
+        steps.reach(BOUNDED + (1.0 - BOUNDED) * (done as f64 / sparse.len() as f64))?;
+    }
     // The s of each: that of most is known, since what lies among sparse points is sparse.
     let s_of = |own: &Around, left: &[(u32, Around)], gone: &Gone| match left
         .binary_search_by_key(&own.last, |(at, _)| *at)
@@ -223,7 +279,7 @@ fn stray_places(points: &[[f32; 3]]) -> (Vec<u32>, f64) {
         }
         gone.count += found.len();
         if gone.count > count / MOST || count - gone.count < FEWEST {
-            return (Vec::new(), median);
+            return Some((Vec::new(), median));
         }
         // What those were near to is searched for anew.
         let lost = |at: u32, reach: f64| {
@@ -242,7 +298,7 @@ fn stray_places(points: &[[f32; 3]]) -> (Vec<u32>, f64) {
             .filter(|(s, (at, own))| lost(own.last, **s) || lost(*at, own.farthest))
             .for_each(|(s, (_, own))| *s = s_of(own, &left, &gone));
     }
-    ((0..count as u32).filter(|&at| gone.flags[at as usize]).collect(), median)
+    Some(((0..count as u32).filter(|&at| gone.flags[at as usize]).collect(), median))
 }
 
 /// Points that are left out of a search.
@@ -275,106 +331,6 @@ fn bound_of(points: &[[f32; 3]], at: usize, enough: f64) -> f64 {
 
 fn square(a: [f32; 3], b: [f32; 3]) -> f64 {
     [0, 1, 2].map(|axis| (f64::from(b[axis]) - f64::from(a[axis])).powi(2)).iter().sum()
-}
-
-/// Boxes around eight points that follow each other on a curve, around eight of these, and so on: the tree of a
-/// device's neighbour search, on the CPU. Made in a hundredth of the time of a k-d tree, for few searches.
-struct Boxes<'a> {
-    points: &'a [[f32; 3]],
-    /// Around points first.
-    levels: Vec<Vec<Box3>>,
-}
-
-const FAN: usize = 8;
-
-/// A box, by its lowest and highest corner.
-type Box3 = [[f32; 3]; 2];
-const EMPTY: Box3 = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
-
-fn join([low, high]: Box3, [low_too, high_too]: Box3) -> Box3 {
-    [
-        [0, 1, 2].map(|axis| low[axis].min(low_too[axis])),
-        [0, 1, 2].map(|axis| high[axis].max(high_too[axis])),
-    ]
-}
-
-/// What is around a point.
-struct Around {
-    /// Distance to the nearest other.
-    nearest: f64,
-    /// Distance to the [`NEIGHBORS`]-th nearest.
-    farthest: f64,
-    /// Which that is.
-    last: u32,
-}
-
-impl<'a> Boxes<'a> {
-    fn new(points: &'a [[f32; 3]]) -> Self {
-        let mut levels: Vec<Vec<Box3>> = vec![
-            points
-                .par_chunks(FAN)
-                .map(|few| few.iter().map(|&p| [p, p]).fold(EMPTY, join))
-                .collect(),
-        ];
-        while let Some(below) = levels.last().filter(|below| below.len() > FAN) {
-            let above = below.par_chunks(FAN).map(|few| few.iter().copied().fold(EMPTY, join));
-            let above = above.collect();
-            levels.push(above);
-        }
-        Self { points, levels }
-    }
-
-    /// What is around a point, of which it is known that enough others lie within `bound`.
-    fn around(&self, at: u32, gone: &Gone, bound: f64) -> Around {
-        let bound = bound * bound * (1.0 + 1e-9);
-        let center = self.points[at as usize];
-        let top = self.levels.len() - 1;
-        // Nearest first: (square, place on the curve).
-        let mut found: Vec<(f64, u32)> = Vec::with_capacity(NEIGHBORS + 1);
-        let mut stack: Vec<(f64, usize, usize)> = Vec::with_capacity(64);
-        let push = |stack: &mut Vec<_>, level: usize, range: std::ops::Range<usize>| {
-            let before = stack.len();
-            stack.extend(
-                range.map(|node| (square_to(center, &self.levels[level][node]), level, node)),
-            );
-            stack[before..].sort_unstable_by(|a: &(f64, usize, usize), b| b.0.total_cmp(&a.0));
-        };
-        push(&mut stack, top, 0..self.levels[top].len());
-        while let Some((away, level, node)) = stack.pop() {
-            let is_full = found.len() == NEIGHBORS;
-            if away > bound || (is_full && found.last().is_some_and(|worst| away > worst.0)) {
-                continue;
-            }
-            if level > 0 {
-                let children = node * FAN..self.levels[level - 1].len().min((node + 1) * FAN);
-                push(&mut stack, level - 1, children);
-                continue;
-            }
-            for other in node * FAN..self.points.len().min((node + 1) * FAN) {
-                if other == at as usize || gone.flags[other] {
-                    continue;
-                }
-                let candidate = (square(center, self.points[other]), other as u32);
-                let place = found.partition_point(|f| *f < candidate);
-                if place < NEIGHBORS {
-                    found.truncate(NEIGHBORS - 1);
-                    found.insert(place, candidate);
-                }
-            }
-        }
-        let of =
-            |entry: Option<&(f64, u32)>| entry.map_or((f64::INFINITY, at), |&(d, i)| (d.sqrt(), i));
-        let (farthest, last) = of(found.last());
-        Around { nearest: of(found.first()).0, farthest, last }
-    }
-}
-
-fn square_to(p: [f32; 3], [low, high]: &[[f32; 3]; 2]) -> f64 {
-    let away = |axis: usize| {
-        let p = f64::from(p[axis]);
-        (f64::from(low[axis]) - p).max(p - f64::from(high[axis])).max(0.0)
-    };
-    [0, 1, 2].map(away).iter().map(|x| x * x).sum()
 }
 
 #[cfg(test)]
@@ -507,6 +463,33 @@ mod tests {
         let eight: Vec<[f64; 3]> = points.iter().flat_map(|&p| [p; 8]).collect();
         assert_eq!(strays(&points).places, [2000]);
         assert_eq!(strays(&eight).places, Vec::from_iter(16_000..16_008));
+    }
+
+    /// Progress rises to the count of points, from what was done before, and a request for an end is met in the middle.
+    #[test]
+    fn the_search_is_watched() {
+        struct Look(std::sync::Mutex<Vec<u64>>, usize);
+        impl Watch for Look {
+            fn stage(&self, _: &'static str, _: u64) {}
+            fn done(&self, units: u64) {
+                self.0.lock().unwrap().push(units);
+            }
+            fn interrupted(&self) -> bool {
+                self.0.lock().unwrap().len() > self.1
+            }
+        }
+        let mut points = sphere(200_000);
+        points.push([9.0, 0.0, 0.0]);
+        let look = Look(Vec::new().into(), usize::MAX);
+        let found = Strays::find_watched(&points, [0.0; 3], &look, 1000);
+        assert_eq!(found, Some(Strays::find(&points, [0.0; 3])));
+        let shown = look.0.into_inner().unwrap();
+        assert!(shown.len() > 3 && shown.is_sorted(), "{shown:?}");
+        assert!(shown.iter().all(|units| (1000..=201_001).contains(units)), "{shown:?}");
+        for calls in 0..3 {
+            let look = Look(Vec::new().into(), calls);
+            assert_eq!(Strays::find_watched(&points, [0.0; 3], &look, 0), None, "{calls}");
+        }
     }
 
     #[test]

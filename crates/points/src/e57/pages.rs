@@ -1,6 +1,7 @@
 //! The file's pages: each ends with a checksum, which is no part of what is read.
 
 use super::Fault;
+use crate::error::Quoted;
 use crate::source::Seekable;
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -35,6 +36,10 @@ impl<'a> Pages<'a> {
             return Err(Fault::wrong("the file", found, "an E57 header of 48 bytes"));
         }
         let header = file.bytes_at(0, HEADER)?;
+        if !super::sniff(&header) {
+            let found = format!("bytes that begin with {}", Quoted(&header[..8]));
+            return Err(Fault::unread("the file", found, "ASTM-E57, as E57 files begin"));
+        }
         let u32_at = |place: usize| {
             let mut array = [0; 4];
             array.copy_from_slice(&header[place..place + 4]);

@@ -47,6 +47,11 @@ impl Extra {
     }
 }
 
+/// Bytes of a point that these numbers take.
+pub(super) fn bytes_of(extra: &[Extra]) -> usize {
+    extra.iter().map(|extra| extra.stored.size()).sum()
+}
+
 /// The extra numbers that several records describe, one record after the other. Where that is more
 /// than a point has, and the last record that does so describes all by itself, a program has
 /// written the description anew and left the old one in place.

@@ -346,7 +346,7 @@ fn damaged_headers_say_what_is_wrong() {
             with(105, &[255, 255]),
             "declares 5 points needing 327675 bytes, but the file ends after 0",
         ),
-        (with(107, &[0; 4]), "the file holds no points"),
+        (with(107, &[0; 4]), "found 0 as the number of points"),
         (with(104, &[3 | 1 << 7]), "found no LASzip record"),
     ] {
         assert!(message.contains(expected), "{message}\nlacks {expected}");
@@ -429,4 +429,42 @@ fn no_damage_panics_or_hangs() {
             }
         }
     }
+}
+
+/// Bytes that no record describes hold data that nobody sees.
+#[test]
+fn extra_bytes_without_a_description_are_noted() {
+    let mut made = Made { extra: 4, ..Made::plain(1, 10) };
+    let plain = read(&made.file()).unwrap();
+    let note = "4 extra bytes of each point are left out, since no record of the file describes";
+    assert!(plain.notes.len() == 1 && plain.notes[0].starts_with(note), "{:?}", plain.notes);
+    let described = variable_record("LASF_Spec", 4, &describe(9, 0, "height", 0.0, 0.0));
+    assert_eq!(read(&with_record(made.file(), &described)).unwrap().notes, [""; 0]);
+    made.extra = 0;
+    assert_eq!(read(&made.file()).unwrap().notes, [""; 0]);
+}
+
+#[test]
+fn headers_that_would_lose_all_points_are_refused() {
+    let whole = Made::plain(1, 10).file();
+    let with = |place: usize, bytes: &[u8]| {
+        let mut file = whole.clone();
+        file[place..place + bytes.len()].copy_from_slice(bytes);
+        file
+    };
+    let unfinished = message(&with(107, &[0; 4]));
+    assert!(
+        unfinished.contains(
+            "found 0 as the number of points, expected the count of those in the 280 bytes"
+        ),
+        "{unfinished}"
+    );
+    for axis in 0..2 {
+        let flat = message(&with(131 + 8 * axis, &[0; 8]));
+        assert!(flat.contains("as the scale factors, expected numbers other than 0"), "{flat}");
+    }
+    let flat = read(&with(147, &[0; 8])).unwrap();
+    assert_eq!(flat.notes, ["the scale factor of z is 0, so all points have the height -7.5"]);
+    let other = message(&with(0, b"\x01SOS"));
+    assert!(other.contains("begin with '\\u{1}SOS' as the file, expected LASF"), "{other}");
 }

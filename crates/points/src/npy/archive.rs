@@ -4,6 +4,7 @@ use crate::collect::Collector;
 use crate::columns::{Part, Shared, SideBySide, check_expansion, data_error, fill};
 use crate::error::PointsError;
 use crate::field::Type;
+use crate::foreign;
 use crate::meaning::{self, printable};
 use crate::npy::header::Header;
 use crate::npy::{HELP, MAX_COLUMNS, Rows, bits_of_colors, named};
@@ -269,11 +270,15 @@ fn members(file: &Shared<'_>, path: &Path) -> Result<Vec<Member>, PointsError> {
         let shown = names.iter().take(SHOWN).map(|name| format!("'{}'", printable(name)));
         let shown = shown.collect::<Vec<String>>().join(", ");
         let more = if names.len() > SHOWN { ", …" } else { "" };
-        return Err(PointsError::UnknownKind {
-            path: path.into(),
-            found: format!("a zip archive without NumPy arrays ({shown}{more})"),
-            help: "unpack it and open the point file inside".to_owned(),
-        });
+        let found = format!("a zip archive without NumPy arrays ({shown}{more})");
+        return Err(foreign::of_archive(&names).map_or_else(
+            || PointsError::UnknownKind {
+                path: path.into(),
+                found,
+                help: foreign::UNPACK.to_owned(),
+            },
+            |foreign| foreign.error(path),
+        ));
     }
     drop(names);
     if archive.len() > MAX_ARRAYS {

@@ -49,6 +49,13 @@ impl Layout {
     }
 }
 
+/// Whether a line above no rows names x, y and z, whatever separates the names.
+fn names_position(line: &[u8]) -> bool {
+    let line = String::from_utf8_lossy(line);
+    let names = line.split([',', ';', '|', '\t', ' ']).map(|name| name.trim().trim_matches('"'));
+    meaning::positions_among(&names.filter(|name| !name.is_empty()).collect::<Vec<_>>()).is_some()
+}
+
 /// Finds the layout of a table that begins so; `whole` tells that nothing follows.
 pub(super) fn find(
     start: &[u8],
@@ -73,8 +80,12 @@ pub(super) fn find(
     let head = Head::of(start, whole, path)?;
     let Some(&first) = head.rows.first() else {
         let (line, found) = match (head.names_line, head.declared) {
-            (Some(names), _) => (names.line, "names of columns alone"),
-            (None, Some(_)) => (1, "a count alone"),
+            (Some(names), _) if names_position(names.text) => {
+                return Err(PointsError::WithoutPoints { path: path.into() });
+            }
+            (None, Some(0)) => return Err(PointsError::WithoutPoints { path: path.into() }),
+            (Some(names), _) => (names.line, "only names of columns"),
+            (None, Some(_)) => (1, "only a count"),
             (None, None) => (1, "no line of numbers"),
         };
         let expected = "lines with x y z".to_owned();

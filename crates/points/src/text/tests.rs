@@ -190,11 +190,13 @@ fn what_is_wrong_is_named_with_its_line() {
             "hello there\nnot a number\n",
             "a.txt:2: found 'not a number', expected 3 numbers or more",
         ),
-        ("hello\n", "a.txt:1: found names of columns alone, expected lines with x y z"),
-        ("x y z\n", "a.txt:1: found names of columns alone"),
+        ("hello\n", "a.txt:1: found only names of columns, expected lines with x y z"),
+        ("x y z\n", "a.txt: the file holds no points"),
+        ("X,\"Y\",Z,intensity\n", "a.txt: the file holds no points"),
+        ("0\n", "a.txt: the file holds no points"),
         ("# nothing\n\n", "a.txt:1: found no line of numbers, expected lines with x y z"),
         ("\n", "a.txt:1: found no line of numbers"),
-        ("12\n", "a.txt:1: found a count alone"),
+        ("12\n", "a.txt:1: found only a count"),
         (
             "5\n1 2 3\n4 5 6\n",
             "a.txt: the header declares 5 points, but the file ends after 2; the file is cut off \
