@@ -38,7 +38,7 @@ impl Bulk {
         files: &[Arc<PointSet>],
         watch: &dyn Watch,
     ) -> Result<Self, PlanError> {
-        watch.stage("sorting points", sets.iter().map(|set| set.len() as u64).sum());
+        watch.stage("looking for strays", sets.iter().map(|set| set.len() as u64).sum());
         let placed = |(object, set): (&Object, &Arc<PointSet>)| Arc::new(placed(object, set));
         let world: Vec<World> = scene.objects.iter().zip(sets).map(placed).collect();
         let all: Vec<&[[f64; 3]]> = world.iter().map(|world| &world[..]).collect();
@@ -139,6 +139,7 @@ impl Bulk {
         &self,
         scene: &Scene,
         surfaces: &[Arc<PointSet>],
+        watch: &dyn Watch,
     ) -> Result<Cloud, CloudError> {
         let is_whole = |index: usize| Arc::ptr_eq(&self.sets[index], &surfaces[index]);
         let world: Vec<World> = (scene.objects.iter().zip(surfaces).enumerate())
@@ -154,7 +155,7 @@ impl Bulk {
                 order: self.orders[index].as_deref().filter(|_| is_whole(index)),
             })
             .collect();
-        Cloud::within(self.bounds, &object_points)
+        Cloud::within(self.bounds, &object_points, watch)
     }
 }
 

@@ -188,7 +188,7 @@ impl Plan {
             .map(|(object, set)| volumes::surface_points(object, set, watch))
             .collect::<Result<_, _>>()?;
         watch.stage("sorting points", surface_sets.iter().map(|set| set.len() as u64).sum());
-        let cloud = bulk.cloud(scene, &surface_sets)?;
+        let cloud = bulk.cloud(scene, &surface_sets, watch)?;
         let coarse = precision::warnings(scene, sets, &metric, cloud.origin);
         let mut missing = Vec::new();
         let volumes = volumes::plan_volumes(scene, &bulk, &cloud, (watch, &mut missing))?;

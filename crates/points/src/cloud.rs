@@ -9,6 +9,7 @@
 //! stands for all ([`Cloud::within`]).
 
 use crate::curve::{is_copy, sort_along_curve};
+use crate::watch::{Unwatched, Watch};
 use kernels::layout::Point;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -114,7 +115,7 @@ impl Cloud {
     pub fn new(objects: &[ObjectPoints<'_>]) -> Result<Self, CloudError> {
         let all = objects.iter().map(|object| object.positions);
         let bounds = bounds_of(all).ok_or(CloudError::Empty)?;
-        Self::build(bounds, objects, false)
+        Self::build(bounds, objects, false, &Unwatched)
     }
 
     /// The same, where points of one object at equal f32 positions count once: the one that comes first in its file.
@@ -123,21 +124,27 @@ impl Cloud {
     /// As [`Cloud::new`].
     pub fn distinct(objects: &[ObjectPoints<'_>]) -> Result<Self, CloudError> {
         let all = objects.iter().map(|object| object.positions);
-        Self::within(bounds_of(all).ok_or(CloudError::Empty)?, objects)
+        Self::within(bounds_of(all).ok_or(CloudError::Empty)?, objects, &Unwatched)
     }
 
-    /// The distinct points of a scene whose box is given, which may reach farther than they.
+    /// The distinct points of a scene whose box is given, which may reach farther than they. The units of `watch` are
+    /// points.
     ///
     /// # Errors
     /// As [`Cloud::new`], but for a scene without points here.
-    pub fn within(bounds: [[f64; 3]; 2], objects: &[ObjectPoints<'_>]) -> Result<Self, CloudError> {
-        Self::build(bounds, objects, true)
+    pub fn within(
+        bounds: [[f64; 3]; 2],
+        objects: &[ObjectPoints<'_>],
+        watch: &dyn Watch,
+    ) -> Result<Self, CloudError> {
+        Self::build(bounds, objects, true, watch)
     }
 
     fn build(
         bounds: [[f64; 3]; 2],
         objects: &[ObjectPoints<'_>],
         once: bool,
+        watch: &dyn Watch,
     ) -> Result<Self, CloudError> {
         let count: usize = objects.iter().map(|object| object.positions.len()).sum();
         let limit = u32::MAX / 4;
@@ -152,8 +159,13 @@ impl Cloud {
             origin: origin_of(bounds),
             bounds,
         };
+        let mut before = 0;
         for (index, object) in objects.iter().enumerate() {
-            cloud.add_object(index, object, once)?;
+            let points = object.positions.len() as u64;
+            cloud.add_object(index, object, once, &|quarters| {
+                watch.done(before + points * quarters / 4);
+            })?;
+            before += points;
         }
         Ok(cloud)
     }
@@ -163,6 +175,7 @@ impl Cloud {
         index: usize,
         object: &ObjectPoints<'_>,
         once: bool,
+        done: &dyn Fn(u64),
     ) -> Result<(), CloudError> {
         let first = self.points.len();
         let farthest = object
@@ -186,6 +199,7 @@ impl Cloud {
                 index,
             })
             .collect();
+        done(1);
         let mut places: Cow<'_, [u32]> = match object.order {
             Some(order) => Cow::Borrowed(order),
             None => {
@@ -194,6 +208,7 @@ impl Cloud {
                 Cow::Owned(places.into_iter().map(|(_, place)| place).collect())
             }
         };
+        done(2);
         let is_copy_of_last = |pair: &[u32]| {
             let [a, b] = [pair[0], pair[1]].map(|place| local[place as usize].position);
             is_copy(a, b)
@@ -220,9 +235,11 @@ impl Cloud {
             self.order.append(&mut slots);
             self.copies.push(None);
         }
+        done(3);
         let in_order = places.par_iter().with_min_len(PART);
         self.points.par_extend(in_order.map(|&i| local[i as usize]));
         self.objects.push(SlotRange { first_slot: first as u32, count: places.len() as u32 });
+        done(4);
         Ok(())
     }
 

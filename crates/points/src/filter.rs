@@ -10,7 +10,7 @@ use std::fmt;
 /// voxel is the first in the file that all others would keep.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Filter {
-    /// The first point of the file and every so manieth after it; 0 and 1 keep all.
+    /// The first point of the file and every n-th after it; 0 and 1 keep all.
     pub every: u32,
     /// Lowest and highest corner of a box in the file's coordinates, both ends within.
     pub bounds: Option<[[f64; 3]; 2]>,

@@ -449,7 +449,7 @@ pub(crate) static FILTER: Table = Table {
             "every",
             count(1, u32::MAX as i64, "points"),
             Value("1"),
-            "The first point of the file and every so manieth after it, whatever the other \
+            "The first point of the file and every n-th after it, whatever the other \
              conditions leave out.",
         ),
         key("box", Kind::Table(&FILTER_BOX), Words("everywhere", "{}"), FILTER_BOX.doc),
@@ -756,7 +756,7 @@ pub(crate) static VOLUME: Table = Table {
             Value("\"none\""),
             "Which points carry the object's surface: those whose attribute of this name is not zero, \
              `all`, `none`, or, with `auto`, those with no neighbour on one side. The volume then counts \
-             inside that surface alone, where `material.kind` is `glass`.",
+             only inside that surface, where `material.kind` is `glass`.",
         ),
         key(
             "transfer",

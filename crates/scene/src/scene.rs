@@ -246,7 +246,7 @@ pub enum Units {
 /// lengths are the file's.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointFilter {
-    /// The first point of the file and every so manieth after it, from 1.
+    /// The first point of the file and every n-th after it, from 1.
     pub every: u32,
     /// Lowest and highest corner of a box, each coordinate -1e15 to 1e15.
     pub bounds: Option<[[f64; 3]; 2]>,

@@ -455,6 +455,17 @@ mod xml {
             let found = message(&text);
             assert!(found.contains(expected), "{text}: {found}");
         }
+        // Wherever it is cut off, that is what the message says, and not that there are no points.
+        let whole =
+            file(&piece("2", "1 2 3 4 5 6", "<DataArray type='Float32' Name='s'>7 8</DataArray>"));
+        for end in whole.find("<PolyData").unwrap()..whole.find("</VTKFile").unwrap() {
+            let found = message(&whole[..end]);
+            assert!(
+                found.contains("the end of the file, expected '"),
+                "{}: {found}",
+                &whole[..end]
+            );
+        }
         let image = "<VTKFile type='ImageData'><ImageData Origin='0 0 0' Spacing='1 1 1'><Piece \
                      Extent='0 999 0 999 0 999'/></ImageData></VTKFile>";
         assert!(message(image).contains(

@@ -3,6 +3,7 @@
 use crate::columns::Shared;
 use crate::error::{PointsError, Quoted};
 use crate::field::Type;
+use crate::meaning;
 use crate::vtk::lattice::{Axis, MAX_BARE_NODES, too_many_nodes};
 use crate::vtk::xml::markup::{Markup, Tag, TagKind};
 use crate::vtk::xml::packed::{Lengths, Packing};
@@ -24,7 +25,13 @@ pub(super) fn outline(file: &Shared<'_>, path: &Path) -> Result<Outline, PointsE
     let mut markup = Markup::new(file, path);
     let mut scan = Scan::default();
     let mut open: Vec<String> = Vec::new();
-    while let Some(tag) = markup.next()? {
+    loop {
+        let Some(tag) = markup.next()? else {
+            // What is not closed may have gone on, with other pieces too.
+            let Some(last) = open.last() else { break };
+            let expected = format!("'</{}>': the file is cut off", meaning::printable(last));
+            return Err(markup.wrong("the end of the file", expected));
+        };
         if let (true, Some(list)) = (scan.kind.is_empty(), pieces::kind_of(&tag)) {
             return Err(pieces::listed(&mut markup, list));
         }
