@@ -18,6 +18,7 @@
 
 mod apart;
 mod boxes;
+mod steps;
 
 pub use apart::Apart;
 pub(crate) use apart::{filter, size_of};
@@ -25,6 +26,7 @@ pub(crate) use apart::{filter, size_of};
 use crate::cloud::{bounds_of, middle};
 use crate::curve::{is_copy, sort_along_curve};
 use crate::strays::boxes::{Around, Boxes, EMPTY, join};
+use crate::strays::steps::{BOUNDED, PLACED, SORTED, Steps};
 use crate::watch::{Unwatched, Watch};
 use kernels::layout::Point;
 use rayon::prelude::*;
@@ -183,27 +185,6 @@ fn bulk_of(positions: &[[f64; 3]], left_out: &[u32]) -> [[f64; 3]; 2] {
         first = end + 1;
     }
     bounds_of(runs).unwrap_or_default()
-}
-
-/// Shares of the time after which points are placed, sorted, and their surroundings bounded, measured with ten
-/// million; the rest is searches.
-const PLACED: f64 = 0.05;
-const SORTED: f64 = 0.6;
-const BOUNDED: f64 = 0.9;
-
-/// Shows how far the search for strays is.
-struct Steps<'a> {
-    watch: &'a dyn Watch,
-    before: u64,
-    points: u64,
-}
-
-impl Steps<'_> {
-    /// This share of the work is done; `None` where an end is asked for.
-    fn reach(&self, share: f64) -> Option<()> {
-        self.watch.done(self.before + (share * self.points as f64) as u64);
-        (!self.watch.interrupted()).then_some(())
-    }
 }
 
 /// Which of some distinct positions along a curve are stray, ascending, and the median of r.
