@@ -333,7 +333,8 @@ fn distinct_names(fields: &[Field]) -> Vec<String> {
 /// The names of the fields, for messages: not more than a line holds.
 fn listed(fields: &[Field]) -> String {
     const MOST: usize = 20;
-    let names: Vec<_> = fields.iter().take(MOST).map(|field| format!("'{}'", field.name)).collect();
+    let name = |field: &Field| format!("'{}'", field.original_name());
+    let names: Vec<_> = fields.iter().take(MOST).map(name).collect();
     let more = if fields.len() > MOST { ", …" } else { "" };
     match names.as_slice() {
         [] => "none".to_owned(),

@@ -241,7 +241,7 @@ fn positions_of(plain: &[String]) -> Option<[usize; 3]> {
     plainest()
         .or_else(|| POSITION_OF_THREE.into_iter().find_map(all))
         .or_else(|| with_more(plain))
-        .or_else(|| Some([longitude(plain)?, latitude(plain)?, z?]))
+        .or_else(|| Some([longitude(plain)?, latitude(plain)?, z.or_else(|| height(plain))?]))
 }
 
 /// Names with longitude or latitude in them, such as `decimalLongitude`.
@@ -251,6 +251,51 @@ fn longitude(plain: &[String]) -> Option<usize> {
 
 fn latitude(plain: &[String]) -> Option<usize> {
     plain.iter().position(|name| units::is_latitude(name))
+}
+
+/// The first name with a height in it, such as `GPSAltitude`, `alt_m`, `ele` and `h_ph`: what z is beside longitude and
+/// latitude. A height over ground or in feet,
+/// that of the geoid, or how exact one is, is none.
+fn height(plain: &[String]) -> Option<usize> {
+    const WORDS: [&str; 12] = [
+        "elevation",
+        "elevations",
+        "elev",
+        "ele",
+        "height",
+        "hgt",
+        "altitude",
+        "alt",
+        "msl",
+        "h",
+        "z",
+        "ellh",
+    ];
+    const LONG: [&str; 4] = ["elevation", "height", "altitude", "elev"];
+    const OTHER: [&str; 16] = [
+        "agl",
+        "relative",
+        "rel",
+        "above",
+        "geoid",
+        "geoidal",
+        "undulation",
+        "accuracy",
+        "acc",
+        "error",
+        "err",
+        "std",
+        "sigma",
+        "ref",
+        "ft",
+        "feet",
+    ];
+    plain.iter().position(|name| {
+        let mut words = name.split('_');
+        let is_height =
+            |word: &str| WORDS.contains(&word) || LONG.iter().any(|long| word.ends_with(long));
+        words.clone().any(is_height) && !words.any(|word| OTHER.contains(&word))
+    })
 }
 
 /// Positions whose names have the same before and after what stands for the axis.

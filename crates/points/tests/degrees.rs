@@ -47,6 +47,12 @@ fn columns_of_a_table_that_are_named_so_are_degrees() {
         assert_eq!(set.positions[0], [-86.5, 40.1, 250.0], "the numbers stay the file's");
         assert_eq!(set.notes, Vec::<String>::new());
     }
+    // Heights have names of their own beside longitude and latitude.
+    for z in ["ele", "GPSAltitude", "alt_m", "msl", "h_ph", "Ellipsoidal_Height"] {
+        let set = table(&format!("lon_deg,lat_deg,{z}"));
+        assert_eq!(set.positions[0], [-86.5, 40.1, 250.0], "{z}");
+        assert_eq!(reason(&set), "its columns are named lon_deg and lat_deg");
+    }
     // Latitude first: the names say which is which.
     let rows: Vec<String> = places().iter().map(|[x, y, z]| format!("{y} {x} {z}\n")).collect();
     let set = read("a.txt", format!("lat lon alt\n{}", rows.concat()).as_bytes());
@@ -54,6 +60,19 @@ fn columns_of_a_table_that_are_named_so_are_degrees() {
         (set.positions[0], reason(&set)),
         ([-86.5, 40.1, 250.0], "its columns are named lon and lat")
     );
+}
+
+/// What is beside longitude and latitude is not a height because it has the word in its name.
+#[test]
+fn how_exact_a_height_is_is_none() {
+    let rows: Vec<String> = places().iter().map(|[x, y, z]| format!("{x},{y},0.5,{z}\n")).collect();
+    let text = |names: &str| format!("{names}\n{}", rows.concat());
+    let set = read("a.csv", text("lon_deg,lat_deg,alt_std,alt_m").as_bytes());
+    assert_eq!(set.positions[0], [-86.5, 40.1, 250.0]);
+    let bytes = text("lon,lat,height_agl,speed").into_bytes();
+    let error = read_bytes(&bytes, Path::new("a.csv"), &ReadOptions::default());
+    let error = error.expect_err("no z").to_string();
+    assert!(error.contains("('lon', 'lat', 'height_agl', 'speed')"), "{error}");
 }
 
 #[test]
