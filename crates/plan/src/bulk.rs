@@ -9,6 +9,9 @@ use rayon::prelude::*;
 use scene::{Object, Scene};
 use std::sync::Arc;
 
+/// Strays of a volume that lie this part of the bulk's diagonal outside it, or less, are in the picture as well.
+const RIM: f64 = 0.05;
+
 /// Positions in the world of the points of an object.
 pub(crate) type World = Arc<Vec<[f64; 3]>>;
 
@@ -89,7 +92,6 @@ impl Bulk {
             return;
         }
         let index = self.sets.len();
-        self.apart.push((index, strays.apart(index, &file.positions)));
         let [low, high] = strays.bulk;
         let sides = [0, 1, 2].map(|axis| high[axis] - low[axis]);
         let diagonal = sides.iter().map(|side| side * side).sum::<f64>().sqrt();
@@ -98,10 +100,16 @@ impl Bulk {
             places.iter().for_each(|&place| keep[place as usize] = false);
             kept(set, world, &keep)
         };
+        let is_volume = object.volume.is_some();
+        // Of the particles at the rim of a volume nothing is lost.
+        if !is_volume || strays.farthest > RIM * diagonal {
+            let apart = strays.apart(index, &file.positions);
+            self.apart.push((index, Apart { is_volume, ..apart }));
+        }
         let (bulk_set, bulk_world) = without(&strays.places);
         let far = |&&place: &&u32| strays.distance(&world[place as usize]) > diagonal;
         let far: Vec<u32> = strays.places.iter().filter(far).copied().collect();
-        self.particles.push(match (object.volume.is_some(), far.is_empty()) {
+        self.particles.push(match (is_volume, far.is_empty()) {
             (false, _) => (Arc::clone(&bulk_set), Arc::clone(&bulk_world)),
             (true, true) => all,
             (true, false) => without(&far),

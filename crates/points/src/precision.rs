@@ -20,6 +20,9 @@ pub struct Coarse {
 const ASKED: usize = 64;
 /// Steps may be this part of a spacing.
 const FINE: f64 = 0.01;
+/// Positions within so many steps of each other are copies, unless there are more than a few of them.
+const COPY: f64 = 2.0;
+const FEW_COPIES: u32 = 8;
 /// Points that a thread looks at together.
 const PART: usize = 1 << 14;
 
@@ -36,7 +39,8 @@ pub fn single_step(value: f64) -> f64 {
 /// Steps that are coarse for at least half of the points that are asked. `step_at` says how long a step of f32 is
 /// at the position of this place in `positions`, in the same unit, and 0 where it rounds nothing.
 ///
-/// Positions that are equal are one. `None` where steps are fine, or there is no second position.
+/// Positions that are equal are one, and so are few that differ by a step or two: copies that were rounded otherwise.
+/// `None` where steps are fine, or there is no second position.
 #[must_use]
 pub fn coarse(positions: &[[f64; 3]], step_at: impl Fn(usize) -> f64) -> Option<Coarse> {
     let stride = positions.len().div_ceil(ASKED).max(1);
@@ -48,7 +52,7 @@ pub fn coarse(positions: &[[f64; 3]], step_at: impl Fn(usize) -> f64) -> Option<
         return None;
     }
     let slabs = Slabs::new(&asked, &reaches);
-    let none = || vec![f64::INFINITY; asked.len()];
+    let none = || vec![Nearest::default(); asked.len()];
     let nearest = positions.par_chunks(PART).map(|part| {
         let mut nearest = none();
         for p in part {
@@ -56,20 +60,19 @@ pub fn coarse(positions: &[[f64; 3]], step_at: impl Fn(usize) -> f64) -> Option<
             while near != 0 {
                 let i = near.trailing_zeros() as usize;
                 near &= near - 1;
-                let distance = distance(&asked[i].0, p);
-                if distance > 0.0 && distance < nearest[i] {
-                    nearest[i] = distance;
-                }
+                let (position, step) = &asked[i];
+                nearest[i].see(distance(position, p), COPY * step);
             }
         }
         nearest
     });
     let nearest = nearest.reduce(none, |mut a, b| {
-        a.iter_mut().zip(b).for_each(|(a, b)| *a = a.min(b));
+        a.iter_mut().zip(&b).for_each(|(a, b)| a.join(b));
         a
     });
-    let found = (0..asked.len()).filter(|&i| nearest[i] < reaches[i]);
-    let mut found: Vec<(f64, f64)> = found.map(|i| (nearest[i], asked[i].1)).collect();
+    let is_coarse = |&i: &usize| nearest[i].is_within(reaches[i]);
+    let found = (0..asked.len()).filter(is_coarse);
+    let mut found: Vec<(f64, f64)> = found.map(|i| (nearest[i].of_all, asked[i].1)).collect();
     if found.is_empty() || found.len() * 2 < asked.len() {
         return None;
     }
@@ -117,6 +120,47 @@ pub fn single_axes(positions: &[[f64; 3]]) -> [bool; 3] {
             && values().any(|value| Some(value) != values().next())
             && odd * 10 >= asked.len()
     })
+}
+
+/// What is nearest to a point.
+#[derive(Clone)]
+struct Nearest {
+    /// Distance to the nearest position that is not the same.
+    of_all: f64,
+    /// To the nearest that is no copy.
+    of_others: f64,
+    /// How many copies there are.
+    copies: u32,
+}
+
+impl Default for Nearest {
+    fn default() -> Self {
+        Self { of_all: f64::INFINITY, of_others: f64::INFINITY, copies: 0 }
+    }
+}
+
+impl Nearest {
+    /// A copy is within `as_copy`.
+    fn see(&mut self, distance: f64, as_copy: f64) {
+        if distance > 0.0 {
+            self.of_all = self.of_all.min(distance);
+            match distance > as_copy {
+                true => self.of_others = self.of_others.min(distance),
+                false => self.copies += 1,
+            }
+        }
+    }
+
+    fn join(&mut self, other: &Self) {
+        self.of_all = self.of_all.min(other.of_all);
+        self.of_others = self.of_others.min(other.of_others);
+        self.copies += other.copies;
+    }
+
+    fn is_within(&self, reach: f64) -> bool {
+        let of = if self.copies > FEW_COPIES { self.of_all } else { self.of_others };
+        of < reach
+    }
 }
 
 /// Which of the points that are asked may have another one at this x within their reach.
@@ -214,6 +258,11 @@ mod tests {
         let copies: Vec<[f64; 3]> = positions.iter().flat_map(|&p| [p; 8]).collect();
         assert_eq!(rounding(&copies, [0.0; 3]), None);
         assert!(rounding(&copies, [1e6, 0.0, 0.0]).is_some());
+        // What another program rounded otherwise is a copy as well.
+        let nearly: Vec<[f64; 3]> =
+            positions.iter().flat_map(|&p| [p, p.map(|x| x + 1e-9), p.map(|x| x - 2e-9)]).collect();
+        assert_eq!(rounding(&nearly, [0.0; 3]), None);
+        assert!(rounding(&nearly, [1e6, 0.0, 0.0]).is_some());
         for few in [&positions[..0], &positions[..1], &[positions[0]; 9]] {
             assert_eq!(rounding(few, [1e6, 0.0, 0.0]), None);
         }

@@ -15,13 +15,15 @@ pub struct Apart {
     pub farthest: f64,
     /// The longest side of that box.
     pub size: f64,
+    /// Whether the points make a volume, and no surface.
+    pub is_volume: bool,
     /// The option of the command line that leaves out those that lie outside it, if any do.
     pub filter: Option<String>,
 }
 
 impl fmt::Display for Apart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { count, is_counted, of, farthest, size, filter } = self;
+        let Self { count, is_counted, of, farthest, size, is_volume, filter } = self;
         let about = if *is_counted { "" } else { "about " };
         let (lie, they, show, count_not) = match count {
             1 => ("lies", "it", "shows", "does"),
@@ -32,7 +34,16 @@ impl fmt::Display for Apart {
             let [farthest, size] = [short(*farthest), short(*size)];
             write!(f, ", up to {farthest} outside the rest, which is {size} wide")?;
         }
-        write!(f, "; {they} {show} no surface and {count_not} not count for the view")?;
+        match is_volume {
+            false => {
+                write!(f, "; {they} {show} no surface and {count_not} not count for the view")?
+            }
+            true => write!(
+                f,
+                "; {they} {count_not} not count for the view; what lies farther off than the rest is wide is not in the \
+                 volume either"
+            )?,
+        }
         match filter {
             Some(filter) => write!(f, "; {filter} leaves out what lies outside"),
             None => Ok(()),
@@ -101,12 +112,19 @@ mod tests {
             of: 501,
             farthest: 590.1,
             size: 2.0,
+            is_volume: false,
             filter: Some("F".into()),
         };
         assert_eq!(
             one.to_string(),
             "1 of 501 points lies far from all others, up to 590 outside the rest, which is 2.00 wide; it shows \
              no surface and does not count for the view; F leaves out what lies outside"
+        );
+        let volume = Apart { is_volume: true, ..one.clone() };
+        assert_eq!(
+            volume.to_string(),
+            "1 of 501 points lies far from all others, up to 590 outside the rest, which is 2.00 wide; it does not \
+             count for the view; what lies farther off than the rest is wide is not in the volume either; F leaves out what lies outside"
         );
         let inside = Apart { count: 3, farthest: 0.0, filter: None, ..one };
         assert_eq!(

@@ -1,6 +1,6 @@
-//! Boxes around points along a curve, in which a few searches for neighbours need no more.
+//! A tree of boxes over points along a curve, and searches for what is around one of them.
 
-use super::{Gone, NEIGHBORS, square};
+use super::{Gone, NEIGHBORS};
 use rayon::prelude::*;
 
 /// Boxes around eight points that follow each other on a curve, around eight of these, and so on: the tree of a
@@ -9,6 +9,8 @@ pub(super) struct Boxes<'a> {
     points: &'a [[f32; 3]],
     /// Around points first.
     levels: Vec<Vec<Box3>>,
+    /// The neighbour whose distance measures density: [`NEIGHBORS`], or fewer in a small set.
+    pub neighbors: usize,
 }
 
 const FAN: usize = 8;
@@ -27,11 +29,13 @@ pub(super) fn join([low, high]: Box3, [low_too, high_too]: Box3) -> Box3 {
 /// What is around a point.
 pub(super) struct Around {
     /// Distance to the nearest other.
-    pub(super) nearest: f64,
+    pub nearest: f64,
     /// Distance to the [`NEIGHBORS`]-th nearest.
-    pub(super) farthest: f64,
+    pub farthest: f64,
     /// Which that is.
-    pub(super) last: u32,
+    pub last: u32,
+    /// The nearest other.
+    pub first: u32,
 }
 
 impl<'a> Boxes<'a> {
@@ -47,16 +51,26 @@ impl<'a> Boxes<'a> {
             let above = above.collect();
             levels.push(above);
         }
-        Self { points, levels }
+        Self { points, levels, neighbors: NEIGHBORS.min(points.len().saturating_sub(2) / 2) }
     }
 
     /// What is around a point, of which it is known that enough others lie within `bound`.
     pub(super) fn around(&self, at: u32, gone: &Gone, bound: f64) -> Around {
+        let found = self.nearby(at, gone, bound);
+        let of =
+            |entry: Option<&(f64, u32)>| entry.map_or((f64::INFINITY, at), |&(d, i)| (d.sqrt(), i));
+        let ((nearest, first), (farthest, last)) = (of(found.first()), of(found.last()));
+        Around { nearest, farthest, last, first }
+    }
+
+    /// The nearest others, nearest first, each with the square of its distance.
+    pub(super) fn nearby(&self, at: u32, gone: &Gone, bound: f64) -> Vec<(f64, u32)> {
         let bound = bound * bound * (1.0 + 1e-9);
+        let neighbors = self.neighbors;
         let center = self.points[at as usize];
         let top = self.levels.len() - 1;
         // Nearest first: (square, place on the curve).
-        let mut found: Vec<(f64, u32)> = Vec::with_capacity(NEIGHBORS + 1);
+        let mut found: Vec<(f64, u32)> = Vec::with_capacity(neighbors + 1);
         let mut stack: Vec<(f64, usize, usize)> = Vec::with_capacity(64);
         let push = |stack: &mut Vec<_>, level: usize, range: std::ops::Range<usize>| {
             let before = stack.len();
@@ -67,7 +81,7 @@ impl<'a> Boxes<'a> {
         };
         push(&mut stack, top, 0..self.levels[top].len());
         while let Some((away, level, node)) = stack.pop() {
-            let is_full = found.len() == NEIGHBORS;
+            let is_full = found.len() == neighbors;
             if away > bound || (is_full && found.last().is_some_and(|worst| away > worst.0)) {
                 continue;
             }
@@ -82,16 +96,13 @@ impl<'a> Boxes<'a> {
                 }
                 let candidate = (square(center, self.points[other]), other as u32);
                 let place = found.partition_point(|f| *f < candidate);
-                if place < NEIGHBORS {
-                    found.truncate(NEIGHBORS - 1);
+                if place < neighbors {
+                    found.truncate(neighbors - 1);
                     found.insert(place, candidate);
                 }
             }
         }
-        let of =
-            |entry: Option<&(f64, u32)>| entry.map_or((f64::INFINITY, at), |&(d, i)| (d.sqrt(), i));
-        let (farthest, last) = of(found.last());
-        Around { nearest: of(found.first()).0, farthest, last }
+        found
     }
 }
 
@@ -101,4 +112,8 @@ fn square_to(p: [f32; 3], [low, high]: &[[f32; 3]; 2]) -> f64 {
         (f64::from(low[axis]) - p).max(p - f64::from(high[axis])).max(0.0)
     };
     [0, 1, 2].map(away).iter().map(|x| x * x).sum()
+}
+
+pub(super) fn square(a: [f32; 3], b: [f32; 3]) -> f64 {
+    [0, 1, 2].map(|axis| (f64::from(b[axis]) - f64::from(a[axis])).powi(2)).iter().sum()
 }

@@ -180,6 +180,7 @@ impl Passing {
             of: points,
             farthest,
             size: size_of(bulk),
+            is_volume: false,
             filter: (farthest > 0.0).then(|| filter(0, bulk)),
         });
         Some(Found { bulk, apart })
