@@ -2,7 +2,7 @@
 
 use crate::watch::Watch;
 
-/// Shares of the time after which points are placed, sorted, and their surroundings bounded, measured with ten
+/// Shares of the time after which points are placed, sorted, and their surroundings bounded, measured with six
 /// million; the rest is searches.
 pub(super) const PLACED: f64 = 0.05;
 pub(super) const SORTED: f64 = 0.6;
