@@ -282,8 +282,10 @@ fn is_alike(first: &[u8], second: &[u8]) -> bool {
 fn has_as_many(names: &[u8], row: &[u8]) -> bool {
     let separator = Separator::of_line(row);
     let columns = columns_of(separator, row).len();
+    // After a separator at the end, a value may be missing.
+    let at_most = separator.words(row).len().max(columns);
     let names = columns_of(separator, names).len();
-    names == columns || (names >= 3 && names + 1 == columns)
+    (columns..=at_most).contains(&names) || (names >= 3 && names + 1 == columns)
 }
 
 /// The place of the line of names above a row, between which another line may have the units.

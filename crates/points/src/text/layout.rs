@@ -96,10 +96,19 @@ pub(super) fn find(
     let separator = Separator::of(few.map(|row| row.text));
     let comma = separator.allows_decimal_comma()
         && head.rows.iter().any(|row| separator.words(row.text).iter().any(|w| w.contains(&b',')));
-    let in_first = columns_of(separator, first.text);
+    let mut in_first = columns_of(separator, first.text);
+    // A separator at the end of the first line may have a value after it that is missing.
+    let with_last = in_first.len() + 1;
+    let may_lack_last = separator.words(first.text).len() == with_last;
+    if may_lack_last
+        && head.rows.iter().any(|row| columns_of(separator, row.text).len() == with_last)
+    {
+        in_first.push(String::new());
+    }
     let names = head.names(separator, &in_first);
     let in_first = match &names {
         Some(names) if names.open => names.names.len(),
+        Some(names) if may_lack_last && names.names.len() == with_last => with_last,
         _ => in_first.len(),
     };
     if let Some(names) = names.as_ref().filter(|names| names.names.len() != in_first) {

@@ -64,6 +64,27 @@ fn separators_comments_and_line_ends_do_not_matter() {
     }
 }
 
+/// Spreadsheets and pandas write what is not a number as nothing.
+#[test]
+fn a_value_may_be_missing_at_the_end_of_the_first_line() {
+    let last = |text: &str, name: &str| -> Vec<f64> {
+        let set = read(text);
+        assert_eq!(set.positions[0], [1.0, 2.0, 3.0], "{text:?}");
+        set.attribute(name).map_or(Vec::new(), |values| values.iter().collect())
+    };
+    let named = last("x,y,z,t\n1,2,3,\n4,5,6,\n7,8,9,0.5\n", "t");
+    assert!(named[0].is_nan() && named[1].is_nan() && named[2] == 0.5, "{named:?}");
+    let all = last(&format!("x;y;z;t\n{}", "1;2;3;\n".repeat(1500)), "t");
+    assert!(all.len() == 1500 && all.iter().all(|value| value.is_nan()));
+    let placed = last("1,2,3,\n4,5,6,10\n7,8,9,11.5\n", "intensity");
+    assert!(placed[0].is_nan() && placed[1..] == [10.0, 11.5], "{placed:?}");
+    let after_preamble = "Export of a survey\nDate: 2024\n\nx,y,z,t\n1,2,3,\n4,5,6,2\n";
+    assert_eq!(last(after_preamble, "t")[1], 2.0);
+    // Else a separator at the end separates nothing.
+    assert!(read("x,y,z\n1,2,3,\n4,5,6,\n").attributes.is_empty());
+    assert!(read("1,2,3,\n4,5,6,\n").attributes.is_empty());
+}
+
 #[test]
 fn columns_go_by_their_names_in_any_order() {
     let set = read(
