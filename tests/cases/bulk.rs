@@ -6,7 +6,7 @@ use harness::{
     Bench, assert_same_film, fibonacci_sphere, moved, plan_of, random, render_twin, set_of,
     with_attribute,
 };
-use points::PointSet;
+use points::{Attribute, PointSet, Values};
 
 const SCENE: &str = "image.size = [64, 48]\n[[lights]]\nkind = \"directional\"\ndirection = [0.3, -1, -0.5]\n\
                      irradiance = [3, 3, 3]\n";
@@ -103,6 +103,18 @@ fn the_first_of_coinciding_points_gives_the_colour() {
     let twice: Vec<[f64; 3]> = sphere.iter().copied().chain(near).collect();
     let colors = (0..4000).map(|i| if i < 2000 { color(i) } else { [1.0, 0.0, 0.0] }).collect();
     assert_same_film("colours of the first", &colored(twice, colors), &expected);
+    let mapped = |set| {
+        let text = format!(
+            "{SCENE}[[objects]]\npoints = \"a.ply\"\n[objects.material]\nalbedo = \"attribute:t\"\n"
+        );
+        render_twin(&plan_of(&text, &[set])).film
+    };
+    let once = mapped(with_attribute(set_of(sphere.clone()), "t", |p| p[2]));
+    let mut values: Vec<f64> = sphere.iter().map(|p| p[2]).collect();
+    values.extend([1e6; 2000]);
+    let values = Attribute { name: "t".to_owned(), values: Values::F64(values) };
+    let copied = PointSet { attributes: vec![values], ..set_of(sphere.repeat(2)) };
+    assert_same_film("the range of the first", &mapped(copied), &once);
 }
 
 /// A sum is over all particles, and a mean takes each: copies are no fewer.

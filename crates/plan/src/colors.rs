@@ -77,11 +77,13 @@ pub(crate) fn attribute_values(set: &PointSet, name: &str) -> Result<Vec<f64>, S
     }
 }
 
-/// The colours of an attribute of the object's points, linear. What is no number is marked.
+/// The colours of an attribute of the object's points, linear. What is no number is marked. Where the scene gives no
+/// range, it is that of the points that count.
 pub(crate) fn attribute_colors(
     object: &Object,
     set: &PointSet,
     (name, map, range): (&str, ColorMap, Option<[f64; 2]>),
+    counts: impl Fn(usize) -> bool,
 ) -> Result<Vec<[f32; 3]>, PlanError> {
     let values = attribute_values(set, name).map_err(|known| PlanError::NoAttribute {
         name: object.name.clone(),
@@ -90,7 +92,8 @@ pub(crate) fn attribute_colors(
         known,
     })?;
     let own_range = || {
-        let finite = values.iter().copied().filter(|value| value.is_finite());
+        let counted = values.iter().copied().enumerate().filter(|&(place, _)| counts(place));
+        let finite = counted.map(|(_, value)| value).filter(|value| value.is_finite());
         finite.fold(None, |range: Option<[f64; 2]>, value| {
             Some(range.map_or([value; 2], |[low, high]| [low.min(value), high.max(value)]))
         })

@@ -63,7 +63,7 @@ pub(crate) fn object_infos(
     let mut colors: Vec<f32> = Vec::new();
     let mut infos = Vec::new();
     for (index, (object, set)) in scene.objects.iter().zip(sets).enumerate() {
-        let values = point_values(object, set)?;
+        let values = point_values(object, set, |place| cloud.counts(index, place))?;
         let (mut texture, mut rows) = (NONE, [[0.0; 4]; 2]);
         if let (MaterialKind::Diffuse, Albedo::Texture { file, axis }) =
             (object.material.kind, &object.material.albedo)
@@ -191,7 +191,11 @@ enum PointValues {
     Places(Vec<[f32; 2]>),
 }
 
-fn point_values(object: &Object, set: &PointSet) -> Result<PointValues, PlanError> {
+fn point_values(
+    object: &Object,
+    set: &PointSet,
+    counts: impl Fn(usize) -> bool,
+) -> Result<PointValues, PlanError> {
     if object.material.kind != MaterialKind::Diffuse {
         return Ok(PointValues::None);
     }
@@ -210,9 +214,9 @@ fn point_values(object: &Object, set: &PointSet) -> Result<PointValues, PlanErro
         (Albedo::Points, None) => {
             return Err(PlanError::NoColors { name: name.clone(), file: file() });
         }
-        (Albedo::Attribute { name, color_map, range }, _) => {
-            PointValues::Colors(colors::attribute_colors(object, set, (name, *color_map, *range))?)
-        }
+        (Albedo::Attribute { name, color_map, range }, _) => PointValues::Colors(
+            colors::attribute_colors(object, set, (name, *color_map, *range), counts)?,
+        ),
         (Albedo::Texture { axis, .. }, _) => match (axis, colors::places(set)) {
             (None | Some(TextureAxis::Uv), Some(places)) => PointValues::Places(places),
             (Some(TextureAxis::Uv), None) => {

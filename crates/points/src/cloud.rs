@@ -243,6 +243,13 @@ impl Cloud {
         Ok(())
     }
 
+    /// Whether a point of an object counts, by its place among those given: a copy does not.
+    #[must_use]
+    pub fn counts(&self, object: usize, place: usize) -> bool {
+        let counted = self.copies[object].as_ref().map(|copies| &copies.counted);
+        counted.is_none_or(|counted| counted.binary_search(&(place as u32)).is_ok())
+    }
+
     /// The slot of a point of an object, by its place among those given: of a copy, that of the point that counts.
     #[must_use]
     pub fn slot(&self, object: usize, place: usize) -> u32 {
