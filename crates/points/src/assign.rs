@@ -76,7 +76,7 @@ impl Columns {
         }
     }
 
-    /// Whether nothing is said.
+    /// Whether it is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.named.is_empty() && self.left_out.is_empty()

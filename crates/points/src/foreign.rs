@@ -19,7 +19,7 @@ pub(crate) struct Foreign {
     help: &'static str,
 }
 
-/// How a format is told by its contents.
+/// How a format is recognised by its contents.
 enum Looks {
     /// Not at all.
     Anyhow,

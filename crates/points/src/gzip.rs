@@ -1,4 +1,4 @@
-//! Files packed by gzip: what is inside of them is read as if it were the file.
+//! Files packed by gzip: what is inside them is read as if it were the file.
 //!
 //! A text of gigabytes may be in a file of kilobytes that was made to fill memory, so one that
 //! unpacks to much more than a text does is refused, as archives of NumPy are.

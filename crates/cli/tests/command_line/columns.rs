@@ -1,4 +1,4 @@
-//! Which column of a file is what: `--columns`, `[objects.columns]`, and what is said of guesses.
+//! Which column of a file is what: `--columns`, `[objects.columns]`, and the notes about guesses.
 
 use crate::{Folder, run_in};
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! Points in degrees: what is said of them, and that their picture is that of the same land in metres.
+//! Points in degrees: the notes about them, and that their picture is that of the same land in metres.
 
 use crate::{Folder, run_in};
 use std::fmt::Write;

@@ -96,7 +96,7 @@ fn values_that_are_none_are_counted() {
     }
 }
 
-/// The choice is said where it is not y, with what overrides it.
+/// A note names the choice where it is not y, and what overrides it.
 #[test]
 fn which_way_is_up_is_said_and_can_be_overridden() {
     let folder = Folder::new();

@@ -1,4 +1,4 @@
-//! What is said of strays.
+//! The words about strays.
 
 use std::fmt;
 
