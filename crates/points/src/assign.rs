@@ -218,7 +218,7 @@ impl Columns {
         }
     }
 
-    /// The names of the columns with what is said of them in place. A name that is given to one column
+    /// The names of the columns, with those that the user gives in their places. A name that is given to one column
     /// is taken from any other.
     pub(crate) fn renamed(
         &self,

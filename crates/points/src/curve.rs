@@ -60,7 +60,7 @@ pub(crate) fn is_copy(a: [f32; 3], b: [f32; 3]) -> bool {
 }
 
 /// Equal where positions are.
-fn key_of(position: [f32; 3]) -> [u32; 3] {
+pub(crate) fn key_of(position: [f32; 3]) -> [u32; 3] {
     position.map(|x| (x + 0.0).to_bits())
 }
 

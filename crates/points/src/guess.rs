@@ -113,7 +113,7 @@ impl Guesser<'_> {
         self.doubts.extend(triples.doubts(self.evidence));
     }
 
-    /// Names columns that stand alone: alpha, labels, intensities.
+    /// Names single columns: alpha, labels, intensities.
     fn singles(&mut self, triples: &Triples, after_position: usize) {
         let evidence = self.evidence;
         let columns = self.names.len();

@@ -31,12 +31,13 @@ pub use apart::Apart;
 pub(crate) use apart::{filter, size_of};
 
 use crate::cloud::{bounds_of, middle};
-use crate::curve::{is_copy, sort_along_curve};
+use crate::curve::{is_copy, key_of, sort_along_curve};
 use crate::strays::boxes::{Around, Boxes, EMPTY, join, square};
 use crate::strays::steps::{BOUNDED, PLACED, SORTED, Steps};
 use crate::watch::{Unwatched, Watch};
 use kernels::layout::Point;
 use rayon::prelude::*;
+use std::collections::HashSet;
 
 /// The neighbour whose distance measures density; the largest cluster that can be stray.
 const NEIGHBORS: usize = 16;
@@ -58,6 +59,8 @@ const RUN: usize = NEIGHBORS + 4;
 const SEARCHED: usize = 1 << 19;
 /// Rounds at most. Each takes away what kept others from being found, and a second is rare.
 const ROUNDS: usize = 16;
+/// Pairs of points that are compared to know what is searched for anew; where there are more, everything is.
+const COMPARED: usize = 1 << 24;
 /// Coordinates are clamped here. Squares are taken in f64, which bears them.
 const FARTHEST_SEEN: f64 = 1e30;
 /// Points that one thread takes at once.
@@ -129,10 +132,11 @@ impl Strays {
         let (stray, reach) = stray_places(&on_curve, &steps)?;
         let mut places = Vec::new();
         if !stray.is_empty() {
-            let found: Vec<[f32; 3]> = stray.iter().map(|&at| on_curve[at as usize]).collect();
-            let is_stray = |p: [f32; 3]| found.iter().any(|&stray| is_copy(p, stray));
+            let found: HashSet<[u32; 3]> =
+                stray.iter().map(|&at| key_of(on_curve[at as usize])).collect();
             // All copies share their fate.
-            places = (0..local.len() as u32).filter(|place| is_stray(position(place))).collect();
+            let is_stray = |place: &u32| found.contains(&key_of(position(place)));
+            places = (0..local.len() as u32).filter(is_stray).collect();
         }
         let bulk = bulk_of(positions, &places);
         let mut strays = Self { places, bulk, farthest: 0.0, reach, order };
@@ -281,7 +285,11 @@ fn stray_places(points: &[[f32; 3]], steps: &Steps<'_>) -> Option<(Vec<u32>, f64
             return Some((Vec::new(), median));
         }
         // What those were near to is searched for anew.
+        let are_few = found.len() * left.len() <= COMPARED;
         let lost = |at: u32, reach: f64| {
+            if !are_few {
+                return true;
+            }
             let center = points[at as usize];
             let reach = reach * reach * (1.0 + 1e-9);
             found.iter().any(|&gone| square(points[gone as usize], center) <= reach)
