@@ -50,8 +50,9 @@ fn lists_are_those_of_the_host_for_any_k() {
         ("seven places", (0..4_000).map(|i| [f64::from(i % 7), 1.0, f64::from(i % 2)]).collect()),
     ];
     for (name, positions) in sets {
-        for k in [1, 3, 8, 16, 17, 64] {
-            check(name, std::slice::from_ref(&positions), k);
+        for k in [1, 3, 8, 16, 17, 64, 65, 256] {
+            let on_host = check(name, std::slice::from_ref(&positions), k);
+            assert!(k <= 64 || on_host == positions.len() as u64, "{name}: {on_host} at k = {k}");
         }
     }
 }

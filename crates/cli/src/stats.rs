@@ -37,7 +37,7 @@ pub struct Row {
     pub cpu_preparation_ms: Option<Spread>,
     /// Milliseconds of each kernel of the last build.
     pub build_kernels: BTreeMap<&'static str, f64>,
-    /// Points whose neighbours the device left to the CPU, since its search is bounded.
+    /// Points whose neighbours the device left to the CPU, since its search is bounded: by work, and to 64 neighbours.
     pub searched_on_cpu: u64,
     /// What the first build and frame waited for the driver to make pipelines; not in `trace_ms`.
     pub pipelines_ms: f64,

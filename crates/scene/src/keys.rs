@@ -508,7 +508,7 @@ pub(crate) static SURFACE: Table = Table {
     doc: "How the surface is fitted. Lengths are scene units, after the transform.",
     whole: None,
     keys: &[
-        key("neighbors", count(3, 64, "points"), Value("16"), "Nearest other points of a fit."),
+        key("neighbors", count(3, 256, "points"), Value("16"), "Nearest other points of a fit."),
         key(
             "polynomial",
             Kind::Choice(&["full", "incomplete"]),

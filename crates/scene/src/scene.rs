@@ -376,7 +376,7 @@ pub struct Stop {
 /// How the surface is fitted (docs/method.md, section 1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surface {
-    /// Nearest other points of a fit, 3 to 64.
+    /// Nearest other points of a fit, 3 to 256.
     pub neighbors: u32,
     /// Which terms the polynomial has.
     pub polynomial: Polynomial,

@@ -2,7 +2,7 @@
 
 use super::BuildError;
 use super::fit::{FitPolynomials, FitPolynomialsIo};
-use super::search::{Search, SearchSpace};
+use super::search::{BATCH, Search, SearchSpace};
 use super::smooth::SmoothSizes;
 use super::work::Work;
 use crate::{Cloud, NeighborSearch, Rims, SlotRange, Watch};
@@ -10,8 +10,6 @@ use gpu::{Buffer, Device, GpuError, Kernel};
 use kernels::layout::{FitOutcome, FitParams, Rim};
 use std::sync::Arc;
 
-/// Points whose neighbours are listed and fitted in one go: 8 MiB of lists at k = 16.
-const BATCH: u32 = 1 << 17;
 /// The buffers by slot are bound from multiples of so many, which begin where a part of a buffer may.
 const BOUND_FROM: u32 = 64;
 /// Lists that lie so few places apart are read in one go.
@@ -97,9 +95,10 @@ pub fn nearest_others(
     for object in cloud.objects.iter().filter(|object| object.count > 0) {
         let own = &cloud.points[object.range()];
         let boxes = search.record_boxes(&mut recorder, &points, *object, k)?;
-        let mut space = search.space(object.count.min(BATCH), k)?;
-        for first in (0..object.count).step_by(BATCH as usize) {
-            let batch = [first, BATCH.min(object.count - first)];
+        let most = Search::batch(k);
+        let mut space = search.space(object.count.min(most), k)?;
+        for first in (0..object.count).step_by(most as usize) {
+            let batch = [first, most.min(object.count - first)];
             let host = (own, &mut None);
             on_host += search.find(&mut recorder, &points, &boxes, &mut space, batch, host)?;
             let mut lists = vec![0; (batch[1] * space.stride()) as usize];
@@ -142,15 +141,16 @@ impl Fitting {
         let mut on_host: Option<NeighborSearch<'_>> = None;
         let (search, k) = (&self.search, fit.neighbors);
         let boxes = search.record_boxes(rec, &self.points, object, k)?;
-        let mut space = search.space(object.count.min(BATCH), k)?;
+        let most = Search::batch(k);
+        let mut space = search.space(object.count.min(most), k)?;
         let rounds = if is_smoothed(fit) { 0..2 } else { 1..2 };
         for round in rounds {
-            for first in (0..object.count).step_by(BATCH as usize) {
+            for first in (0..object.count).step_by(most as usize) {
                 if watch.interrupted() {
                     return Err(BuildError::Interrupted);
                 }
                 let (first_slot, batch) =
-                    (object.first_slot + first, [first, BATCH.min(object.count - first)]);
+                    (object.first_slot + first, [first, most.min(object.count - first)]);
                 let host = (own, &mut on_host);
                 self.searched_on_host +=
                     self.search.find(rec, &self.points, &boxes, &mut space, batch, host)?;

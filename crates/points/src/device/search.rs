@@ -9,7 +9,8 @@
 //!
 //! Work is bounded. A leaf whose points touch too many others, since little of what is near them is near them
 //! in memory, is searched again with more room; one that touches thousands (with a point far from all, whose
-//! ball holds the whole set) is left to the host, and counted.
+//! ball holds the whole set) is left to the host, and counted. So are all points where each has more than 64
+//! neighbours, for which the kernels have no registers.
 
 use super::line;
 use super::work::Work;
@@ -30,6 +31,10 @@ const FIND: &str = "find_neighbors";
 const TIED_SHARE: usize = 16;
 /// Neighbours that the smaller kernels find, at most.
 const FEW: u32 = 16;
+/// Neighbours that the kernels find, at most.
+const MANY: u32 = 64;
+/// Points whose neighbours are listed and fitted in one go: 8 MiB of lists at k = 16, 32 at 64 and above.
+pub(crate) const BATCH: u32 = 1 << 17;
 /// Leaves that a leaf's points may touch, for every 16 neighbours.
 const CAPACITY: u32 = 96;
 /// The same for the few leaves whose points touched more, and how many of those are searched in one go. Work
@@ -143,8 +148,16 @@ impl Search {
         })
     }
 
+    /// How many points are searched for in one go, at most, where each has so many neighbours: whole leaves.
+    pub fn batch(neighbors: u32) -> u32 {
+        BATCH * MANY / neighbors.max(MANY) / LEAF_POINTS * LEAF_POINTS
+    }
+
     /// What searches of so many neighbours take.
     pub fn kernels(&self, neighbors: u32) -> Vec<Kernel> {
+        if neighbors > MANY {
+            return Vec::new();
+        }
         let many = usize::from(neighbors > FEW);
         let untied = self.find_untied.iter().filter(|_| many == 0);
         let others = [&self.find[many], &self.gather, &self.bound[many]];
@@ -170,10 +183,11 @@ impl Search {
             total += boxes;
             counts.push(boxes);
         }
-        let bytes = u64::from(total) * size_of::<SearchNode>() as u64;
+        let is_searched = neighbors <= MANY;
+        let bytes = if is_searched { u64::from(total) * size_of::<SearchNode>() as u64 } else { 4 };
         let nodes = Buffer::new(&self.device, "search boxes", bytes)?;
         let top = counts.len() - 1;
-        for (level, &count) in counts.iter().enumerate() {
+        for (level, &count) in counts.iter().enumerate().filter(|_| is_searched) {
             let params = LevelParams {
                 first_slot: object.first_slot,
                 point_count: object.count,
@@ -202,14 +216,16 @@ impl Search {
     /// Space for lists of so many entries of at most so many points.
     pub fn space(&self, points: u32, neighbors: u32) -> Result<SearchSpace, GpuError> {
         let device = &self.device;
-        let (stride, groups) = (neighbors.next_multiple_of(4), points.div_ceil(LEAF_POINTS));
+        let stride = neighbors.next_multiple_of(4);
+        let searched = if neighbors <= MANY { points } else { 1 };
+        let groups = searched.div_ceil(LEAF_POINTS);
         let capacity = CAPACITY * neighbors.div_ceil(FEW);
         let words = |name, count: u64| Buffer::new(device, name, 4 * count);
         Ok(SearchSpace {
             neighbors,
             stride,
             capacity,
-            bounds: words("neighbor bounds", u64::from(points))?,
+            bounds: words("neighbor bounds", u64::from(searched))?,
             leaves: words("leaf lists", u64::from(groups) * u64::from(capacity))?,
             counts: words("leaf counts", u64::from(groups))?,
             large_leaves: words(
@@ -247,6 +263,10 @@ impl Search {
             leaf_count: boxes.leaf_count,
             listed: 0,
         };
+        if space.neighbors > MANY {
+            let all: Vec<u32> = (0..count.div_ceil(LEAF_POINTS)).collect();
+            return space.find_on_host(&all, own, &params, on_host);
+        }
         if !space.neighbors.is_multiple_of(4) {
             let bytes = u64::from(count) * u64::from(space.stride) * 4;
             rec.fill(&space.lists, 0, bytes, NONE);
@@ -378,9 +398,11 @@ impl SearchSpace {
     ) -> Result<u64, GpuError> {
         let mut left = 0;
         let (k, first_slot) = (self.neighbors as usize, params.first_slot);
-        for group in groups {
-            let from = group * LEAF_POINTS;
-            let to = params.batch_count.min(from + LEAF_POINTS);
+        // Leaves that follow each other are searched together, on all threads.
+        for run in groups.chunk_by(|a, b| a + 1 == *b) {
+            let (Some(first), Some(last)) = (run.first(), run.last()) else { continue };
+            let from = first * LEAF_POINTS;
+            let to = params.batch_count.min((last + 1) * LEAF_POINTS);
             let range = (params.batch_first + from) as usize..(params.batch_first + to) as usize;
             let found = if groups.len() <= WITHOUT_TREE && search.is_none() {
                 nearest_of_few(own, first_slot, range, k)
