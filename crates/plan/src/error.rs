@@ -104,6 +104,21 @@ pub enum PlanError {
         /// Names that would do.
         known: String,
     },
+    /// Spheres or discs ask for an attribute that the file lacks.
+    #[error(
+        "object '{name}': surface.radius is \"attribute:{attribute}\" but {file} has no such attribute; it has \
+         {known}"
+    )]
+    NoRadii {
+        /// The object.
+        name: String,
+        /// What was asked for.
+        attribute: String,
+        /// Its point file.
+        file: String,
+        /// Names that would do.
+        known: String,
+    },
     /// An attribute without one finite value.
     #[error(
         "object '{name}': material.albedo is \"attribute:{attribute}\" but none of its values in {file} is \

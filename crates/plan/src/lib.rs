@@ -22,6 +22,7 @@ mod neighborhoods;
 mod objects;
 mod picture;
 mod precision;
+mod shapes;
 mod volumes;
 
 pub use camera::View;
@@ -33,6 +34,7 @@ pub use images::{Cleaned, SceneImages};
 pub use missing::{Lacking, Missing};
 pub use needs::{columns as point_columns, filter as point_filter, read_options};
 pub use picture::{Picture, Rays};
+pub use shapes::{ShapeKind, Shapes, scatter_kind};
 pub use volumes::Volumes;
 
 use bulk::Bulk;
@@ -46,7 +48,7 @@ use kernels::layout::{
     TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
 };
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
-use points::{Apart, Cloud, PointSet, Unwatched, Watch};
+use points::{Apart, Cloud, PointSet, SlotRange, Unwatched, Watch};
 use scene::{Fresnel, Light, Scene, Up};
 pub use scene::{Primary, RayLoop, Secondary};
 use std::sync::Arc;
@@ -80,8 +82,10 @@ impl Window {
 pub struct Plan {
     /// The points of all objects.
     pub cloud: Cloud,
-    /// One an object: parameters of `fit_polynomials` over all its points.
+    /// One an object: parameters of `fit_polynomials` over its points that carry a surface, which may be none.
     pub fits: Vec<FitParams>,
+    /// Points that are drawn as spheres or discs: the last slots of their objects.
+    pub shapes: Vec<Shapes>,
     /// Cells along the grid's longest axis; 0: chosen from the points.
     pub grid_resolution: u32,
     /// Cells a ray may cross in one pass; 0: the device decides. Changes no pixel.
@@ -192,15 +196,21 @@ impl Plan {
         let coarse = precision::warnings(scene, sets, &metric, cloud.origin);
         let mut missing = Vec::new();
         let volumes = volumes::plan_volumes(scene, &bulk, &cloud, (watch, &mut missing))?;
-        let fits = scene
-            .objects
-            .iter()
-            .zip(0..)
-            .map(|(object, index)| fit_params(object, index, &cloud))
+        let shapes = shapes::whole_objects(scene, &surface_sets, &cloud, &mut missing)?;
+        let surfaces: Vec<SlotRange> = (0..scene.objects.len())
+            .map(|index| shapes::surface_slots(&cloud, &shapes, index))
+            .collect();
+        let fits = (scene.objects.iter().zip(&surfaces).zip(0..))
+            .map(|((object, slots), index)| fit_params(object, index, *slots))
             .collect();
         let mut list = ImageList::new();
-        let (mut objects, colors) =
-            object_infos(scene, &surface_sets, &cloud, images, (&mut list, &mut missing))?;
+        let (mut objects, colors) = object_infos(
+            scene,
+            &surface_sets,
+            (&cloud, &surfaces),
+            images,
+            (&mut list, &mut missing),
+        )?;
         color_isosurfaces(scene, &volumes, &mut objects);
         let channel_alpha = objects.iter().any(objects::tells_channels_apart);
         let environment = match &scene.background.environment {
@@ -217,6 +227,7 @@ impl Plan {
         let framed = Scene { camera: Some(camera), ..scene.clone() };
         Ok(Self {
             fits,
+            shapes,
             grid_resolution: scene.render.grid_resolution,
             cells_per_pass: scene.render.cells_per_pass,
             ray_loop: scene.render.ray_loop,

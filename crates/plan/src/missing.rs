@@ -36,6 +36,8 @@ pub enum Lacking {
     Color,
     /// The attribute that is shown as a colour.
     Attribute(String),
+    /// The attribute that is the radius of spheres or discs.
+    Radius(String),
     /// The scalar of a volume, or what else its kernel takes of a point.
     Scalar(String),
 }
@@ -51,6 +53,12 @@ impl fmt::Display for Missing {
             }
             Lacking::Attribute(name) => {
                 write!(f, "no '{name}' (NaN) and are drawn in purple, (0.5, 0, 0.5) in linear RGB")
+            }
+            Lacking::Radius(name) => {
+                write!(
+                    f,
+                    "no radius ('{name}' is negative, over 1e12 scene units, or NaN) and are not drawn"
+                )
             }
             Lacking::Scalar(name) => {
                 write!(f, "no finite '{name}' or reach and take no part in the volume")

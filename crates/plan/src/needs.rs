@@ -4,7 +4,7 @@ use crate::colors::UV;
 use points::{Column, Columns, Filter, ReadOptions, Wanted};
 use scene::{
     Albedo, Boundary, MaterialKind, Object, PerParticle, PointColumn, PointColumns, PointFilter,
-    TextureAxis, VolumeKernel, VolumeMode,
+    RadiusOf, SurfaceKind, TextureAxis, VolumeKernel, VolumeMode,
 };
 
 /// How an object's file is to be read for a render.
@@ -20,6 +20,13 @@ pub fn read_options(object: &Object) -> ReadOptions {
             names.extend(UV.iter().flatten());
         }
         Albedo::Texture { .. } | Albedo::Color(_) => {}
+    }
+    let mut discs = false;
+    if let SurfaceKind::Spheres(radius) | SurfaceKind::Discs(radius) = &object.surface.kind {
+        discs = matches!(object.surface.kind, SurfaceKind::Discs(_));
+        if let RadiusOf::Attribute(name) = &radius.of {
+            names.push(name);
+        }
     }
     if let Some(volume) = &object.volume {
         names.push(&volume.scalar);
@@ -39,7 +46,7 @@ pub fn read_options(object: &Object) -> ReadOptions {
     }
     let wanted = Wanted::Some {
         colors,
-        normals: matches!(object.material.kind, MaterialKind::Glass { .. }),
+        normals: discs || matches!(object.material.kind, MaterialKind::Glass { .. }),
         attributes: names.into_iter().map(str::to_owned).collect(),
     };
     ReadOptions {

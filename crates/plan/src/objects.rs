@@ -7,7 +7,7 @@ use kernels::layout::{
     FIT_FULL, FIT_INCOMPLETE, FitParams, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR, NONE,
     ObjectInfo,
 };
-use points::{Cloud, PointSet};
+use points::{Cloud, PointSet, SlotRange};
 use scene::{
     Albedo, FeatureSize, Material, MaterialKind, Normals, Object, Polynomial, Refine, Scene,
     TextureAxis, VolumeMode,
@@ -30,8 +30,8 @@ fn rim_limit(neighbors: u32) -> f32 {
     (0.37 + 0.4 / f64::from(neighbors).sqrt()) as f32
 }
 
-pub(crate) fn fit_params(object: &Object, index: u32, cloud: &Cloud) -> FitParams {
-    let slots = cloud.objects[index as usize];
+/// `slots` are those that carry the object's surface.
+pub(crate) fn fit_params(object: &Object, index: u32, slots: SlotRange) -> FitParams {
     let neighbors = object.surface.neighbors.min(slots.count.saturating_sub(1)).max(1);
     FitParams {
         first_slot: slots.first_slot,
@@ -53,10 +53,11 @@ pub(crate) fn fit_params(object: &Object, index: u32, cloud: &Cloud) -> FitParam
     }
 }
 
+/// `surfaces` are the slots of each object that carry its surface.
 pub(crate) fn object_infos(
     scene: &Scene,
     sets: &[Arc<PointSet>],
-    cloud: &Cloud,
+    (cloud, surfaces): (&Cloud, &[SlotRange]),
     images: &SceneImages,
     (list, missing): (&mut ImageList, &mut Vec<Missing>),
 ) -> Result<(Vec<ObjectInfo>, Vec<f32>), PlanError> {
@@ -83,6 +84,7 @@ pub(crate) fn object_infos(
             first_slot: cloud.objects[index].first_slot,
             polynomial: kind_of(object.surface.polynomial),
             max_iterations: match object.surface.refine {
+                _ if surfaces[index].count == 0 => 0,
                 Refine::None => 0,
                 Refine::Project { max_iterations, .. } => max_iterations,
             },
@@ -90,7 +92,7 @@ pub(crate) fn object_infos(
                 Refine::None => 0.0,
                 Refine::Project { tolerance, .. } => tolerance as f32,
             },
-            slot_count: cloud.objects[index].count,
+            slot_count: surfaces[index].count,
             weight_scale: (1.0 / object.surface.weight_width) as f32,
             blends: u32::from(object.surface.normals == Normals::Blended),
             material: optics.material,

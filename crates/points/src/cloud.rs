@@ -243,6 +243,34 @@ impl Cloud {
         Ok(())
     }
 
+    /// Puts some slots of an object after all its others: `last` says which, by place among them. Within both parts
+    /// the order stays, so that each still lies along the curve. What anybody had by slot is void.
+    ///
+    /// # Panics
+    /// Unless `last` has one entry a slot of the object.
+    pub fn put_last(&mut self, object: usize, last: &[bool]) {
+        let range = self.objects[object].range();
+        assert_eq!(last.len(), range.len(), "one entry a slot of the object");
+        let (mut next, mut next_last) = (0, last.iter().filter(|&&last| !last).count());
+        let place_of = |&last: &bool| {
+            let next = if last { &mut next_last } else { &mut next };
+            *next += 1;
+            *next - 1
+        };
+        let places: Vec<usize> = last.iter().map(place_of).collect();
+        let before = self.points[range.clone()].to_vec();
+        for (point, place) in before.into_iter().zip(&places) {
+            self.points[range.start + place] = point;
+        }
+        let moved = |slot: &mut u32| {
+            *slot = (range.start + places[*slot as usize - range.start]) as u32;
+        };
+        self.order[range.clone()].iter_mut().for_each(moved);
+        if let Some(copies) = &mut self.copies[object] {
+            copies.slots.iter_mut().for_each(moved);
+        }
+    }
+
     /// Whether a point of an object counts, by its place among those given: a copy does not.
     #[must_use]
     pub fn counts(&self, object: usize, place: usize) -> bool {
@@ -336,6 +364,39 @@ mod tests {
         for (point, id) in cloud.points.iter().zip(cloud.by_slot(0, &ids)) {
             assert_eq!(point.index, id);
         }
+    }
+
+    /// Two objects, the first with copies: every third slot of it goes last, and whatever led to a point still does.
+    #[test]
+    fn what_is_put_last_keeps_its_order_and_every_way_to_it() {
+        let position = |i: u32| [f64::from(i * 7919 % 100), f64::from(i * 31 % 97), 0.0];
+        let positions: Vec<[f64; 3]> = (0..300).map(|i| position(i % 200)).collect();
+        let file_index: Vec<u32> = (0..300).collect();
+        let objects = [ObjectPoints::new(&positions, &file_index); 2];
+        let before = Cloud::distinct(&objects).expect("a cloud");
+        assert!(before.objects.iter().all(|object| object.count == 200), "copies count once");
+        let is_last = |place: usize| place % 3 == 1;
+        let last: Vec<bool> = (0..200).map(is_last).collect();
+        let mut after = before.clone();
+        after.put_last(0, &last);
+        let own = &before.points[..200];
+        let part = |which| (0..200).filter(move |&at| is_last(at) == which).map(|at| own[at]);
+        let expected: Vec<Point> = part(false).chain(part(true)).collect();
+        assert_eq!(after.points[..200], expected);
+        assert_eq!(after.points[200..], before.points[200..], "the other object");
+        for place in 0..300 {
+            let at = |cloud: &Cloud| cloud.points[cloud.slot(0, place) as usize];
+            assert_eq!(at(&after), at(&before), "the point for place {place}");
+            assert_eq!(after.counts(0, place), before.counts(0, place));
+        }
+        for ordinal in 0..400 {
+            let at = |cloud: &Cloud| cloud.points[cloud.order[ordinal] as usize];
+            assert_eq!(at(&after), at(&before), "the order by place in the file");
+        }
+        let ids = after.by_slot(0, &file_index);
+        assert!(after.points[..200].iter().zip(ids).all(|(point, id)| point.index == id));
+        after.put_last(0, &[false; 200]);
+        assert_eq!(after.points[..200], expected, "nothing goes last");
     }
 
     /// 2^21 cells an axis, and all points but one in the same.

@@ -52,7 +52,7 @@ use kernels::layout::{FilmPixel, FitOutcome, VOLUME_LIGHTS};
 use levels::Levels;
 use plan::{Picture, Plan, Rays, Window};
 use point_light::point_lights;
-use points::{Grids, NeighborSearch, Rims, Watch, plan_grids};
+use points::{Grids, NeighborSearch, Rims, SlotRange, Watch, plan_grids};
 use polynomial::Polynomial;
 use rayon::prelude::*;
 use real::Real;
@@ -89,9 +89,10 @@ pub fn fit_surfaces<R: Real>(plan: &Plan, watch: &dyn Watch) -> Option<(Vec<Fitt
     let cloud = &plan.cloud;
     let mut fitted: Vec<Fitted<R>> = Vec::with_capacity(cloud.points.len());
     let mut rims = Rims::default();
-    for (object, params) in cloud.objects.iter().zip(&plan.fits) {
-        let range = object.range();
-        let search = NeighborSearch::new(&cloud.points[range.clone()], object.first_slot);
+    for params in plan.fits.iter().filter(|params| params.point_count > 0) {
+        let slots = SlotRange { first_slot: params.first_slot, count: params.point_count };
+        let range = slots.range();
+        let search = NeighborSearch::new(&cloud.points[range.clone()], slots.first_slot);
         let k = params.neighbors as usize;
         let smoothed = match params.feature_size < 0.0 {
             true => Some(Smoothed::new(&search, range.len(), k, watch)?),

@@ -6,7 +6,7 @@
 use crate::read::Reader;
 use crate::whole::{
     background_is_one, box_has_an_inside, camera_has_a_view, direction_has_a_length,
-    material_has_one_color, stops_ascend, volume_says_it_once,
+    material_has_one_color, radius_has_shapes, stops_ascend, volume_says_it_once,
 };
 
 /// A key's name and what is wrong with its value.
@@ -506,8 +506,42 @@ pub(crate) static TRANSFORM: Table = Table {
 pub(crate) static SURFACE: Table = Table {
     header: "[objects.surface]",
     doc: "How the surface is fitted. Lengths are scene units, after the transform.",
-    whole: None,
+    whole: Some(radius_has_shapes),
     keys: &[
+        key(
+            "kind",
+            Kind::Choice(&["points", "spheres", "discs"]),
+            Value("\"points\""),
+            "What is drawn: the smooth surface through the points, a sphere at each point, or a flat disc at \
+             each point, across the file's normals or, without these, the plane through its 16 nearest \
+             others. Of the other keys, spheres and discs use `radius`, `radius_scale` and `drop_isolated`.",
+        ),
+        key(
+            "radius",
+            Kind::Either(&[
+                Kind::Choice(&["auto"]),
+                Kind::Prefixed("attribute:", "the name of an attribute of the points"),
+                LENGTH,
+            ]),
+            Value("\"auto\""),
+            "Kinds `spheres` and `discs` only: the radius of all, in scene units; or \
+             `\"attribute:NAME\"`, an attribute in the file's units, which is scaled with the object; \
+             `auto` is half the median distance between nearest points.",
+        ),
+        key(
+            "radius_scale",
+            Kind::Number(numbers(1e-6, 1e6, "")),
+            Value("1.0"),
+            "Kinds `spheres` and `discs` only: a factor on `radius`. With `auto`, 1 lets spheres on a \
+             lattice touch, and discs close a surface from 1.5 or 2 on.",
+        ),
+        key(
+            "scatter",
+            Kind::Choice(&["discs", "spheres", "drop"]),
+            Value("\"discs\""),
+            "Kind `points` only: how points are drawn that lie on no surface: as small discs, small \
+             spheres, or not at all. Of glass, which has an inside, discs are spheres.",
+        ),
         key("neighbors", count(3, 256, "points"), Value("16"), "Nearest other points of a fit."),
         key(
             "polynomial",

@@ -34,9 +34,9 @@ pub use models::MODELS_VARIABLE;
 pub use scene::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
     ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, PointColumn,
-    PointColumns, PointFilter, Polynomial, Primary, Projection, RayLoop, Refine, RenderSettings,
-    Scene, Secondary, Stop, Surface, TextureAxis, Transfer, Units, Up, Volume, VolumeKernel,
-    VolumeMode, VolumeShading,
+    PointColumns, PointFilter, Polynomial, Primary, Projection, RadiusOf, RayLoop, Refine,
+    RenderSettings, Scatter, Scene, Secondary, ShapeRadius, Stop, Surface, SurfaceKind,
+    TextureAxis, Transfer, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
 };
 pub use schema::{json_schema, suite_json_schema};
 pub use suite::{Shape, Suite, SuiteRow};

@@ -8,9 +8,9 @@ use crate::read::{Reader, to_number, to_vector};
 use crate::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
     ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, PointFilter,
-    Polynomial, Primary, Projection, RayLoop, Refine, RenderSettings, Scene, SceneError, Secondary,
-    Stop, Surface, TextureAxis, Transfer, Transform, Units, Up, Volume, VolumeKernel, VolumeMode,
-    VolumeShading,
+    Polynomial, Primary, Projection, RadiusOf, RayLoop, Refine, RenderSettings, Scatter, Scene,
+    SceneError, Secondary, ShapeRadius, Stop, Surface, SurfaceKind, TextureAxis, Transfer,
+    Transform, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
 };
 use std::env;
 use std::fs::{self, File};
@@ -463,7 +463,27 @@ impl Transform {
 
 impl Surface {
     fn read(table: &Reader<'_>) -> Self {
+        let radius = || ShapeRadius {
+            of: match table.value("radius") {
+                Value::Text(text) => match text.strip_prefix("attribute:") {
+                    Some(name) => RadiusOf::Attribute(name.trim().to_owned()),
+                    None => RadiusOf::Spacing,
+                },
+                number => to_number(&number).map_or(RadiusOf::Spacing, RadiusOf::Length),
+            },
+            scale: table.number("radius_scale"),
+        };
         Self {
+            kind: match table.text("kind").as_str() {
+                "spheres" => SurfaceKind::Spheres(radius()),
+                "discs" => SurfaceKind::Discs(radius()),
+                _ => SurfaceKind::Points,
+            },
+            scatter: match table.text("scatter").as_str() {
+                "spheres" => Scatter::Spheres,
+                "drop" => Scatter::Drop,
+                _ => Scatter::Discs,
+            },
             neighbors: table.count("neighbors"),
             polynomial: match table.text("polynomial").as_str() {
                 "incomplete" => Polynomial::Incomplete,

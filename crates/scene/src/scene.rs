@@ -374,8 +374,12 @@ pub struct Stop {
 }
 
 /// How the surface is fitted (docs/method.md, section 1).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
+    /// What is drawn of the points.
+    pub kind: SurfaceKind,
+    /// How points are drawn that lie on no surface.
+    pub scatter: Scatter,
     /// Nearest other points of a fit, 3 to 256.
     pub neighbors: u32,
     /// Which terms the polynomial has.
@@ -397,6 +401,48 @@ pub struct Surface {
     pub normals: Normals,
     /// What becomes of a hit with a stored polynomial.
     pub refine: Refine,
+}
+
+/// What is drawn of an object's points (docs/method.md, section 1).
+#[derive(Debug, Clone, PartialEq)]
+pub enum SurfaceKind {
+    /// The surface through them.
+    Points,
+    /// A sphere at each.
+    Spheres(ShapeRadius),
+    /// A flat disc at each.
+    Discs(ShapeRadius),
+}
+
+/// How large spheres and discs are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShapeRadius {
+    /// What the radius is taken from.
+    pub of: RadiusOf,
+    /// A factor on that, 1e-6 to 1e6.
+    pub scale: f64,
+}
+
+/// What the radius of spheres and discs is taken from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RadiusOf {
+    /// Half the median distance from a point to its nearest other: one radius for the object.
+    Spacing,
+    /// One radius in scene units, 1e-12 to 1e15.
+    Length(f64),
+    /// Each point's value of the attribute of this name, in the file's units.
+    Attribute(String),
+}
+
+/// How points are drawn that lie on no surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scatter {
+    /// As discs; of glass, which has an inside, as spheres.
+    Discs,
+    /// As spheres.
+    Spheres,
+    /// Not at all.
+    Drop,
 }
 
 /// Whose normal a hit has.

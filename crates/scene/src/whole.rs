@@ -199,6 +199,24 @@ fn isosurface_fits(volume: &Reader<'_>) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Only spheres and discs have a radius, and only a surface leaves points over.
+pub(crate) fn radius_has_shapes(surface: &Reader<'_>) -> Result<(), Fault> {
+    let kind = surface.text("kind");
+    let of_shapes = kind != "points";
+    let owned = [
+        ("radius", of_shapes, "kind \"spheres\" or \"discs\""),
+        ("radius_scale", of_shapes, "kind \"spheres\" or \"discs\""),
+        ("scatter", !of_shapes, "kind \"points\""),
+    ];
+    for (name, fits, owner) in owned {
+        if surface.written(name).is_some() && !fits {
+            let message = format!("belongs to {owner}, but kind is \"{kind}\"; remove one");
+            return Err((name, message));
+        }
+    }
+    Ok(())
+}
+
 /// A transfer function's stops ascend in value.
 pub(crate) fn stops_ascend(volume: &Reader<'_>) -> Result<(), Fault> {
     let values: Vec<f64> = (volume.tables("transfer", &crate::keys::TRANSFER).iter())

@@ -54,8 +54,8 @@ pub(crate) fn fit_all(
         smooth: SmoothSizes::new(device, of(any_smoothed, count), texels)?,
     };
     watch.stage("fitting surfaces", count);
-    for (object, fit) in cloud.objects.iter().zip(fits).filter(|(object, _)| object.count > 0) {
-        fitting.object(cloud, *object, fit, polynomials, work, watch)?;
+    for fit in fits.iter().filter(|fit| fit.point_count > 0) {
+        fitting.object(cloud, fit, polynomials, work, watch)?;
     }
     let mut outcomes = vec![FitOutcome { trust: 0.0, kind: 0, feature_size: 0.0 }; count as usize];
     fitting.outcomes.read(0, &mut outcomes)?;
@@ -131,12 +131,12 @@ impl Fitting {
     fn object(
         &mut self,
         cloud: &Cloud,
-        object: SlotRange,
         fit: &FitParams,
         polynomials: &Buffer,
         rec: &mut Work,
         watch: &dyn Watch,
     ) -> Result<(), BuildError> {
+        let object = SlotRange { first_slot: fit.first_slot, count: fit.point_count };
         let own = &cloud.points[object.range()];
         let mut on_host: Option<NeighborSearch<'_>> = None;
         let (search, k) = (&self.search, fit.neighbors);

@@ -73,6 +73,8 @@ fn every_built_key_is_read() {
             translate: [0.1, 0.30000000000000004, -1e6],
         },
         surface: Surface {
+            kind: SurfaceKind::Points,
+            scatter: Scatter::Discs,
             neighbors: 20,
             polynomial: Polynomial::Incomplete,
             feature_size: FeatureSize::Constant(0.25),
@@ -195,6 +197,8 @@ fn what_is_left_out_is_the_contracts_default() {
     let object = &scene.objects[0];
     assert_eq!((object.name.as_str(), object.transform), ("a", Transform::IDENTITY));
     let surface = Surface {
+        kind: SurfaceKind::Points,
+        scatter: Scatter::Discs,
         neighbors: 16,
         polynomial: Polynomial::Full,
         feature_size: FeatureSize::Adaptive,
@@ -206,7 +210,7 @@ fn what_is_left_out_is_the_contracts_default() {
         boundary_clip: true,
         refine: Refine::None,
     };
-    assert_eq!((object.surface, &object.material.albedo), (surface, &Albedo::Default));
+    assert_eq!((&object.surface, &object.material.albedo), (&surface, &Albedo::Default));
     assert_eq!(object.surface, Surface::default());
     assert_eq!(object.material, Material::default());
     assert_eq!(object.transform, Transform::default());

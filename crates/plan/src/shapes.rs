@@ -1,0 +1,126 @@
+//! Spheres and discs: which slots are drawn as such, how large, and how discs lie.
+
+use crate::PlanError;
+use crate::colors::attribute_values;
+use crate::missing::{Lacking, Missing};
+use points::neighbors::median_spacing;
+use points::{Cloud, FARTHEST, PointSet, SlotRange};
+pub use points::{ShapeKind, Shapes};
+use rayon::prelude::*;
+use scene::{MaterialKind, Object, RadiusOf, Scatter, Scene, ShapeRadius, SurfaceKind};
+use std::sync::Arc;
+
+/// Of `auto`, over the median distance between nearest points.
+const SHARE: f64 = 0.5;
+/// Normals of a file that are shorter say nothing.
+const SHORTEST: f32 = 1e-6;
+
+/// The slots of an object that carry its surface: those before its shapes.
+pub(crate) fn surface_slots(cloud: &Cloud, shapes: &[Shapes], object: usize) -> SlotRange {
+    let all = cloud.objects[object];
+    let own = shapes.iter().filter(|shapes| shapes.object as usize == object);
+    SlotRange { count: all.count - own.map(|shapes| shapes.count).sum::<u32>(), ..all }
+}
+
+/// What points of an object are drawn as that lie on no surface; `None`: they are not drawn. A disc of glass would have
+/// no inside.
+#[must_use]
+pub fn scatter_kind(object: &Object) -> Option<ShapeKind> {
+    match (object.surface.scatter, object.material.kind) {
+        (Scatter::Drop, _) => None,
+        (Scatter::Discs, MaterialKind::Diffuse | MaterialKind::Mirror { .. }) => {
+            Some(ShapeKind::Disc)
+        }
+        (Scatter::Spheres, _) | (Scatter::Discs, MaterialKind::Glass { .. }) => {
+            Some(ShapeKind::Sphere)
+        }
+    }
+}
+
+/// The objects of which all points are spheres or discs.
+pub(crate) fn whole_objects(
+    scene: &Scene,
+    sets: &[Arc<PointSet>],
+    cloud: &Cloud,
+    missing: &mut Vec<Missing>,
+) -> Result<Vec<Shapes>, PlanError> {
+    let mut all = Vec::new();
+    for (index, (object, set)) in scene.objects.iter().zip(sets).enumerate() {
+        let (kind, radius) = match &object.surface.kind {
+            SurfaceKind::Points => continue,
+            SurfaceKind::Spheres(radius) => (ShapeKind::Sphere, radius),
+            SurfaceKind::Discs(radius) => (ShapeKind::Disc, radius),
+        };
+        let SlotRange { first_slot, count } = cloud.objects[index];
+        if count == 0 {
+            continue;
+        }
+        let radii = radii(object, set, radius, |place| cloud.counts(index, place), missing)?;
+        let normals = set.normals.as_ref().filter(|_| kind == ShapeKind::Disc);
+        all.push(Shapes {
+            object: index as u32,
+            first_slot,
+            count,
+            kind,
+            radii: cloud.by_slot(index, &radii),
+            normals: normals.map(|normals| cloud.by_slot(index, &turned(object, normals))),
+        });
+    }
+    Ok(all)
+}
+
+/// The radius of each point in scene units; 0 where it has none, which is counted.
+fn radii(
+    object: &Object,
+    set: &PointSet,
+    radius: &ShapeRadius,
+    counts: impl Fn(usize) -> bool,
+    missing: &mut Vec<Missing>,
+) -> Result<Vec<f32>, PlanError> {
+    let scale = object.transform.scale;
+    let one = |length: f64| vec![(length * radius.scale).min(FARTHEST) as f32; set.len()];
+    let name = match &radius.of {
+        RadiusOf::Length(length) => return Ok(one(*length)),
+        // One place has no spacing, and is not drawn.
+        RadiusOf::Spacing => {
+            return Ok(one(
+                median_spacing(&set.positions).map_or(0.0, |spacing| SHARE * spacing * scale)
+            ));
+        }
+        RadiusOf::Attribute(name) => name,
+    };
+    let values = attribute_values(set, name).map_err(|known| PlanError::NoRadii {
+        name: object.name.clone(),
+        attribute: name.clone(),
+        file: object.points.display().to_string(),
+        known,
+    })?;
+    let is_radius = |length: &f64| (0.0..=FARTHEST).contains(length);
+    let lengths: Vec<f64> = values.into_iter().map(|value| value * scale * radius.scale).collect();
+    let counted = || lengths.iter().enumerate().filter(|(place, _)| counts(*place));
+    let points = counted().filter(|(_, length)| !is_radius(length)).count() as u64;
+    if points > 0 {
+        let what = Lacking::Radius(name.clone());
+        missing.push(Missing {
+            object: object.name.clone(),
+            what,
+            points,
+            of: counted().count() as u64,
+        });
+    }
+    Ok(lengths
+        .into_iter()
+        .map(|length| if is_radius(&length) { length as f32 } else { 0.0 })
+        .collect())
+}
+
+/// Normals of a file in the world, of unit length; zero where one is no direction.
+fn turned(object: &Object, normals: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    let turn = |normal: &[f32; 3]| {
+        let v = object.transform.rotate(normal.map(f64::from));
+        let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let says = length >= f64::from(SHORTEST) && length.is_finite();
+        if says { v.map(|x| (x / length) as f32) } else { [0.0; 3] }
+    };
+    normals.par_iter().map(turn).collect()
+}
