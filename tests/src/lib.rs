@@ -10,6 +10,7 @@
 )]
 
 pub mod analytic;
+pub mod judge;
 mod near;
 pub mod scenes;
 mod shapes;
