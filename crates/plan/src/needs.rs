@@ -1,10 +1,10 @@
 //! What of its point file an object makes use of, so that nothing else is held.
 
 use crate::colors::UV;
-use points::{Column, Columns, Filter, ReadOptions, Wanted};
+use points::{Column, Columns, Filter, ReadOptions, Voxel, Wanted};
 use scene::{
     Albedo, Boundary, MaterialKind, Object, PerParticle, PointColumn, PointColumns, PointFilter,
-    RadiusOf, SurfaceKind, TextureAxis, VolumeKernel, VolumeMode,
+    RadiusOf, SurfaceKind, TextureAxis, VolumeKernel, VolumeMode, VoxelEdge,
 };
 
 /// How an object's file is to be read for a render.
@@ -65,7 +65,10 @@ pub fn filter(filter: &PointFilter) -> Filter {
         bounds: filter.bounds,
         ranges: filter.ranges.clone(),
         classes: filter.classes.clone(),
-        voxel: filter.voxel,
+        voxel: filter.voxel.map(|voxel| match voxel {
+            VoxelEdge::Auto => Voxel::Auto,
+            VoxelEdge::Length(edge) => Voxel::Edge(edge),
+        }),
     }
 }
 
@@ -134,5 +137,7 @@ mod tests {
             "every = 2, box = { min = [0.0, 0.0, 0.0], max = [1.0, 2.0, 3.0] }, range = { z = [0, \
              1] }, classification = [2], voxel = 3"
         );
+        let auto = options("filter.voxel = \"auto\"").filter;
+        assert_eq!((auto.keeps_all(), auto.to_string().as_str()), (false, "voxel = \"auto\""));
     }
 }

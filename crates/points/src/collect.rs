@@ -4,7 +4,7 @@
 //! is decided here, once, by the names and types of the fields; the filter is applied here, before
 //! anything is kept.
 
-use crate::color::{self, Color, Verdict};
+use crate::color::{self, Color, Meanings, Verdict};
 use crate::error::PointsError;
 use crate::field::{Field, Type};
 use crate::filter::Sieve;
@@ -14,6 +14,7 @@ use crate::options::ReadOptions;
 use crate::set::{Attribute, PointSet, Values};
 use crate::stream::Outlet;
 use crate::units::{self, Spread, Units};
+use crate::voxels::{self, Voxel, Voxels};
 use std::collections::{HashMap, HashSet, TryReserveError};
 use std::path::Path;
 
@@ -35,6 +36,10 @@ pub(crate) struct Collector<'a> {
     sieve: Option<Sieve>,
     /// The filter, in words.
     filter: String,
+    /// The cubes whose means are to be the points, and whatever colours may mean until the file ends.
+    voxels: Option<(Voxels, Option<Meanings>)>,
+    /// Whether the edge of cubes is found from all points, which have to be held for that.
+    voxel_is_automatic: bool,
     set: PointSet,
     /// Where points go, block by block, if not into the set.
     outlet: Option<Outlet>,
@@ -134,6 +139,15 @@ impl<'a> Collector<'a> {
                 Some(Sieve::new(filter, places.collect::<Result<_, _>>()?))
             }
         };
+        let voxels = match filter.voxel {
+            Some(Voxel::Edge(edge)) => {
+                let meanings = color.as_ref().map(Meanings::of);
+                let scales = meanings.as_ref().map_or(1, Meanings::len);
+                Some((Voxels::new(edge, &set, scales), meanings))
+            }
+            _ => None,
+        };
+        let voxel_is_automatic = filter.voxel == Some(Voxel::Auto);
         let filter = filter.to_string();
         let (outlet, block) = (options.outlet.clone(), Outlet::block_of(&set));
         let [x, y] = [position[0], position[1]].map(|place| fields[place].original_name());
@@ -146,6 +160,8 @@ impl<'a> Collector<'a> {
             attributes: places,
             sieve,
             filter,
+            voxels,
+            voxel_is_automatic,
             set,
             outlet,
             block,
@@ -203,11 +219,16 @@ impl<'a> Collector<'a> {
             set.non_finite += 1;
             return Ok(());
         }
-        if skipped || self.sieve.as_mut().is_some_and(|sieve| !sieve.keeps(position, row)) {
+        if skipped || self.sieve.as_ref().is_some_and(|sieve| !sieve.keeps(position, row)) {
             set.filtered_out += 1;
             return Ok(());
         }
         self.sample.see(position);
+        if self.voxels.is_some() {
+            self.push_into_voxel(position, index, row);
+            return Ok(());
+        }
+        let set = &mut self.set;
         set.positions.push(position);
         set.file_index.push(index);
         if let (Some(colors), Some(color)) = (&mut set.colors, &self.color) {
@@ -225,20 +246,42 @@ impl<'a> Collector<'a> {
         Ok(())
     }
 
+    /// Adds a point to its cube; any but the first of a cube count as left out.
+    fn push_into_voxel(&mut self, position: [f64; 3], index: u32, row: &[f64]) {
+        let Some((voxels, meanings)) = &mut self.voxels else { return };
+        let (voxel, is_first) = voxels.find(position, index);
+        self.set.filtered_out += u64::from(!is_first);
+        if let (Some(meanings), Some(color)) = (meanings, &self.color) {
+            voxels.add_color(voxel, meanings.linear(color.stored(row).map(|stored| stored as f32)));
+        }
+        if let Some(normal) = self.normal {
+            voxels.add_normal(voxel, normal.map(|place| row[place] as f32));
+        }
+        for (attribute, &place) in self.attributes.iter().enumerate() {
+            voxels.add_value(voxel, attribute, row[place]);
+        }
+    }
+
     /// No point of the file had a colour, although the fields have one.
     pub(crate) fn without_colors(&mut self) {
         self.hand_over();
         (self.color, self.set.colors) = (None, None);
+        if let Some((voxels, meanings)) = &mut self.voxels {
+            voxels.without_colors();
+            *meanings = None;
+        }
     }
 
     /// Points of the file that were kept.
     pub(crate) fn kept(&self) -> u64 {
-        self.handed_over + self.set.positions.len() as u64
+        let voxels = self.voxels.as_ref().map_or(0, |(voxels, _)| voxels.len());
+        self.handed_over + self.set.positions.len() as u64 + voxels as u64
     }
 
     fn hand_over(&mut self) {
         if let Some(outlet) = &self.outlet
             && !self.set.is_empty()
+            && !self.voxel_is_automatic
         {
             self.handed_over += self.set.positions.len() as u64;
             outlet.take(&mut self.set);
@@ -257,7 +300,8 @@ impl<'a> Collector<'a> {
 
     /// Place in the file of the point that comes.
     fn next_index(&mut self) -> Result<u32, PointsError> {
-        let found = self.handed_over + self.set.in_file();
+        let set = &self.set;
+        let found = self.kept() + set.non_finite + set.invalid + set.filtered_out;
         u32::try_from(found)
             .ok()
             .filter(|&index| index < u32::MAX)
@@ -267,34 +311,60 @@ impl<'a> Collector<'a> {
     /// The set, which must not be empty. `format` is the file format in words.
     pub(crate) fn finish(mut self, format: &str) -> Result<PointSet, PointsError> {
         self.hand_over();
-        let mut set = self.set;
-        if self.handed_over == 0 && set.positions.is_empty() {
-            let path = self.path.into();
-            return Err(match set.filtered_out {
-                0 if set.in_file() == 0 => PointsError::WithoutPoints { path },
-                0 => PointsError::NoPoints {
-                    path,
-                    in_file: set.in_file(),
-                    non_finite: set.non_finite,
-                    invalid: set.invalid,
-                },
-                usable => PointsError::FilteredOut { path, usable, filter: self.filter },
-            });
+        if self.kept() == 0 {
+            return Err(self.no_points());
         }
-        if let (Some(color), Some(colors)) = (&self.color, &mut set.colors) {
-            let Verdict { encoding, note } = color.verdict();
-            match encoding {
-                Some(encoding) => color::decode(encoding, colors),
-                None => set.colors = None,
+        let mut set = self.set;
+        let verdict = self.color.as_ref().filter(|_| set.colors.is_some()).map(Color::verdict);
+        let Verdict { encoding, note } = verdict.unwrap_or_default();
+        set.color_encoding = encoding;
+        set.notes.extend(note);
+        match (encoding, &mut set.colors) {
+            (Some(encoding), Some(colors)) => color::decode(encoding, colors),
+            _ => set.colors = None,
+        }
+        let are_means = self.voxels.is_some() || self.voxel_is_automatic;
+        if let Some((mut voxels, meanings)) = self.voxels {
+            let scale = meanings.zip(encoding).map(|(meanings, of)| meanings.place(of));
+            if scale.is_none() {
+                voxels.without_colors();
             }
-            set.color_encoding = encoding;
-            set.notes.extend(note);
+            set = voxels.means(set, scale.unwrap_or(0), 1);
+        } else if self.voxel_is_automatic {
+            let (means, edge) = voxels::automatic(&set);
+            set = means;
+            set.notes.extend(edge.map(|edge| {
+                format!("voxel = \"auto\" takes cubes of {edge:.3e}, twice the median distance of points")
+            }));
+        }
+        if let (true, Some(outlet)) = (are_means, &self.outlet) {
+            // Colours go there as the file would store them.
+            if let (Some(encoding), Some(colors)) = (encoding, &mut set.colors) {
+                let stored = |linear: &mut f32| *linear = encoding.encode(*linear) as f32;
+                colors.iter_mut().flatten().for_each(stored);
+            }
+            outlet.take(&mut set);
         }
         set.format = format.to_owned();
         let (units, doubt) = Units::of(&self.sample.positions, self.degrees);
         set.units = units;
         set.notes.extend(doubt);
         Ok(set)
+    }
+
+    /// Why there is no point.
+    fn no_points(&self) -> PointsError {
+        let (set, path) = (&self.set, self.path.into());
+        match set.filtered_out {
+            0 if set.in_file() == 0 => PointsError::WithoutPoints { path },
+            0 => PointsError::NoPoints {
+                path,
+                in_file: set.in_file(),
+                non_finite: set.non_finite,
+                invalid: set.invalid,
+            },
+            usable => PointsError::FilteredOut { path, usable, filter: self.filter.clone() },
+        }
     }
 }
 
@@ -343,110 +413,4 @@ fn listed(fields: &[Field]) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::field::Type;
-    use crate::filter::Filter;
-    use crate::options::Wanted;
-
-    fn fields(names: &[(&str, Type)]) -> Vec<Field> {
-        names.iter().map(|&(name, kind)| Field::new(name, kind)).collect()
-    }
-
-    fn xyz_and(others: &[(&str, Type)]) -> Vec<Field> {
-        let xyz = [("x", Type::F64), ("y", Type::F64), ("z", Type::F64)];
-        fields(&[&xyz, others].concat())
-    }
-
-    fn collect(
-        fields: &[Field],
-        rows: &[&[f64]],
-        options: &ReadOptions,
-    ) -> Result<PointSet, PointsError> {
-        let mut collector = Collector::new(fields, Path::new("a"), options)?;
-        for row in rows {
-            collector.push(row)?;
-        }
-        collector.finish("rows")
-    }
-
-    #[test]
-    fn names_that_come_twice_are_numbered() {
-        let fields = xyz_and(&[("a", Type::F32), ("a", Type::U8), ("a_2", Type::U8)]);
-        let set = collect(&fields, &[&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]], &ReadOptions::default());
-        let set = set.unwrap();
-        assert_eq!(set.attribute("a"), Some(&Values::F32(vec![3.0])));
-        assert_eq!(set.attribute("a_2"), Some(&Values::U8(vec![4])));
-        assert_eq!(set.attribute("a_2_2"), Some(&Values::U8(vec![5])));
-    }
-
-    #[test]
-    fn what_is_not_wanted_is_named_but_not_held() {
-        let fields = xyz_and(&[
-            ("nx", Type::F32),
-            ("ny", Type::F32),
-            ("nz", Type::F32),
-            ("red", Type::U8),
-            ("green", Type::U8),
-            ("blue", Type::U8),
-            ("a", Type::F64),
-            ("b", Type::U8),
-        ]);
-        let wanted =
-            Wanted::Some { colors: false, normals: true, attributes: vec!["b".to_owned()] };
-        let options = ReadOptions { wanted, ..ReadOptions::default() };
-        let set = collect(&fields, &[&[0.0; 11]], &options).unwrap();
-        assert_eq!((set.colors, set.color_encoding), (None, None));
-        assert_eq!(set.normals, Some(vec![[0.0; 3]]));
-        assert_eq!(set.left_out, ["a"]);
-        assert_eq!(set.attributes.len(), 1);
-    }
-
-    #[test]
-    fn filters_are_applied_in_their_order() {
-        let fields = xyz_and(&[("Classification", Type::U8), ("intensity", Type::U16)]);
-        // x from 0 to 11, class 0 to 2 in turn, intensity ten times x.
-        let rows: Vec<[f64; 5]> = (0..12)
-            .map(|i| [f64::from(i), 0.0, -0.0, f64::from(i % 3), f64::from(10 * i)])
-            .collect();
-        let rows: Vec<&[f64]> = rows.iter().map(|row| &row[..]).collect();
-        let kept = |filter: Filter| {
-            let options = ReadOptions { filter, ..ReadOptions::default() };
-            let set = collect(&fields, &rows, &options).unwrap();
-            assert_eq!(set.len() as u64 + set.filtered_out, 12);
-            set.file_index
-        };
-        let all = Filter::default;
-        assert_eq!(kept(Filter { every: 5, ..all() }), [0, 5, 10]);
-        let bounds = Some([[2.0, -1.0, 0.0], [4.0, 1.0, 0.0]]);
-        assert_eq!(kept(Filter { bounds, ..all() }), [2, 3, 4]);
-        assert_eq!(kept(Filter { bounds, every: 2, ..all() }), [2, 4]);
-        let ranges = vec![("intensity".to_owned(), [30.0, 70.0]), ("X".to_owned(), [0.0, 6.5])];
-        assert_eq!(kept(Filter { ranges: ranges.clone(), ..all() }), [3, 4, 5, 6]);
-        let classes = Some(vec![2, 6]);
-        assert_eq!(kept(Filter { classes: classes.clone(), ..all() }), [2, 5, 8, 11]);
-        assert_eq!(kept(Filter { ranges, classes: classes.clone(), ..all() }), [5]);
-        assert_eq!(kept(Filter { voxel: Some(4.0), ..all() }), [0, 4, 8]);
-        assert_eq!(kept(Filter { voxel: Some(4.0), classes, ..all() }), [2, 5, 8]);
-    }
-
-    #[test]
-    fn filters_that_keep_nothing_or_ask_for_what_is_not_there_are_errors() {
-        let read = |filter| {
-            let options = ReadOptions { filter, ..ReadOptions::default() };
-            collect(&xyz_and(&[]), &[&[1.0, 2.0, 3.0]], &options).unwrap_err().to_string()
-        };
-        let ranges = vec![("z".to_owned(), [0.0, 1.5])];
-        let none = read(Filter { ranges, every: 3, ..Filter::default() });
-        assert_eq!(
-            none,
-            "a: the filter (every = 3, range = { z = [0, 1.5] }) keeps none of 1 points; widen it"
-        );
-        let missing = read(Filter { classes: Some(vec![2]), ..Filter::default() });
-        assert_eq!(
-            missing,
-            "a: found no attribute 'classification', which the filter asks for, expected it among \
-             the fields of a point ('x', 'y', 'z'); name one of them in [objects.filter]"
-        );
-    }
-}
+mod tests;

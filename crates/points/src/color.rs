@@ -51,6 +51,7 @@ struct Seen {
 }
 
 /// What colours turned out to be.
+#[derive(Default)]
 pub(crate) struct Verdict {
     /// `None` where nobody wrote any.
     pub(crate) encoding: Option<ColorEncoding>,
@@ -198,6 +199,56 @@ pub(crate) fn decode(encoding: ColorEncoding, colors: &mut [[f32; 3]]) {
             }
             _ => encoding.decode(f64::from(*value)),
         };
+    }
+}
+
+/// All that stored numbers may turn out to mean, for those who cannot hold them until that is known.
+pub(crate) struct Meanings {
+    /// An encoding, and the linear values of whole numbers from 0 on.
+    list: Vec<(ColorEncoding, Vec<f32>)>,
+    /// Of the last colour.
+    linear: Vec<[f32; 3]>,
+}
+
+impl Meanings {
+    /// Those that the verdict about this colour can be.
+    pub(crate) fn of(color: &Color) -> Self {
+        let is_byte = matches!(color.place, Place::Packed(_)) || color.kind.size() == 1;
+        // One encoding for each number at full intensity, which is all that counts.
+        let of_others = [
+            (ColorEncoding::Fraction, 2),
+            (ColorEncoding::Srgb16High, 1 << 16),
+            (ColorEncoding::Srgb16, 1 << 16),
+        ];
+        let byte = std::iter::once((ColorEncoding::Srgb8, 1 << 8));
+        let list = byte.chain(of_others.into_iter().filter(|_| !is_byte));
+        let table = |encoding: ColorEncoding, entries: u32| {
+            (encoding, (0..entries).map(|stored| encoding.decode(f64::from(stored))).collect())
+        };
+        Self { list: list.map(|(of, entries)| table(of, entries)).collect(), linear: Vec::new() }
+    }
+
+    /// How many there are.
+    pub(crate) fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Which of them an encoding is.
+    pub(crate) fn place(&self, encoding: ColorEncoding) -> usize {
+        self.list.iter().position(|(of, _)| of.full() == encoding.full()).unwrap_or(0)
+    }
+
+    /// The linear colour by each of them, as [`decode`] has it.
+    pub(crate) fn linear(&mut self, stored: [f32; 3]) -> &[[f32; 3]] {
+        let one = |(encoding, table): &(ColorEncoding, Vec<f32>)| {
+            stored.map(|value| match table.get(value as usize) {
+                Some(&linear) if value.fract() == 0.0 && value >= 0.0 => linear,
+                _ => encoding.decode(f64::from(value)),
+            })
+        };
+        self.linear.clear();
+        self.linear.extend(self.list.iter().map(one));
+        &self.linear
     }
 }
 

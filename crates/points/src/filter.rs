@@ -1,13 +1,13 @@
 //! Which points of a file are kept.
 
-use std::collections::HashSet;
+use crate::voxels::Voxel;
 use std::fmt;
 
 /// Which points of a file are kept. The default is all of them.
 ///
 /// The conditions are applied in the order of the fields, while the file is read: `every` counts
-/// the points of the file, whatever the others drop; `voxel` comes last, so that the one point of a
-/// voxel is the first in the file that all others would keep.
+/// the points of the file, whatever the others drop; `voxel` comes last, so that a point is the mean of
+/// what all others keep in its cube.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Filter {
     /// The first point of the file and every n-th after it; 0 and 1 keep all.
@@ -18,8 +18,9 @@ pub struct Filter {
     pub ranges: Vec<(String, [f64; 2])>,
     /// Values of `classification` that are kept.
     pub classes: Option<Vec<u32>>,
-    /// Edge of cubes, from the origin of the file's coordinates on, that keep one point each.
-    pub voxel: Option<f64>,
+    /// Cubes, from the origin of the file's coordinates on, of whose points one is made
+    /// ([`voxel_means`](crate::voxel_means)).
+    pub voxel: Option<Voxel>,
 }
 
 /// The attribute that [`Filter::classes`] is about.
@@ -61,27 +62,28 @@ impl fmt::Display for Filter {
         if let Some(classes) = &self.classes {
             parts.push(format!("classification = {classes:?}"));
         }
-        if let Some(voxel) = self.voxel {
-            parts.push(format!("voxel = {voxel}"));
+        match self.voxel {
+            Some(Voxel::Edge(edge)) => parts.push(format!("voxel = {edge}")),
+            Some(Voxel::Auto) => parts.push("voxel = \"auto\"".to_owned()),
+            None => {}
         }
         write!(f, "{}", parts.join(", "))
     }
 }
 
-/// A filter at work on a file.
+/// A filter at work on a file, but for its voxels.
 pub(crate) struct Sieve {
     filter: Filter,
     /// Where in a row the filter's names stand, in the order of [`Filter::names`].
     places: Vec<usize>,
     /// Points of the file that are to be passed over before the next is looked at.
     to_skip: u32,
-    voxels: HashSet<[u64; 3]>,
 }
 
 impl Sieve {
     /// `places` are those of [`Filter::names`] in the rows to come.
     pub(crate) fn new(filter: &Filter, places: Vec<usize>) -> Self {
-        Self { filter: filter.clone(), places, to_skip: 0, voxels: HashSet::new() }
+        Self { filter: filter.clone(), places, to_skip: 0 }
     }
 
     /// Whether the next point of the file is passed over whatever it is. To be asked once a point.
@@ -95,7 +97,7 @@ impl Sieve {
     }
 
     /// Whether a point that is not skipped, with a finite position, is kept.
-    pub(crate) fn keeps(&mut self, position: [f64; 3], row: &[f64]) -> bool {
+    pub(crate) fn keeps(&self, position: [f64; 3], row: &[f64]) -> bool {
         let within = |[min, max]: [f64; 2], value: f64| value >= min && value <= max;
         let in_box = |[min, max]: [[f64; 3]; 2]| {
             (0..3).all(|axis| within([min[axis], max[axis]], position[axis]))
@@ -107,14 +109,8 @@ impl Sieve {
                 .last()
                 .is_some_and(|&place| classes.iter().any(|&class| f64::from(class) == row[place]))
         };
-        let kept = self.filter.bounds.is_none_or(in_box)
+        self.filter.bounds.is_none_or(in_box)
             && in_ranges
-            && self.filter.classes.as_ref().is_none_or(of_a_class);
-        if !kept {
-            return false;
-        }
-        let Some(edge) = self.filter.voxel else { return true };
-        // Adding 0 makes -0 the same as 0.
-        self.voxels.insert(position.map(|x| ((x / edge).floor() + 0.0).to_bits()))
+            && self.filter.classes.as_ref().is_none_or(of_a_class)
     }
 }

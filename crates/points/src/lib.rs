@@ -51,6 +51,7 @@ mod summary;
 mod text;
 mod units;
 mod upright;
+mod voxels;
 mod vtk;
 mod watch;
 
@@ -71,4 +72,5 @@ pub use stream::Outlet;
 pub use summary::{Dropped, Histogram, PointSummary, Range, summarize};
 pub use units::Units;
 pub use upright::Upwards;
+pub use voxels::{Voxel, voxel_means};
 pub use watch::{Unwatched, Watch};

@@ -34,7 +34,7 @@ pub(crate) fn find<'a>(names: impl Iterator<Item = &'a str> + Clone, asked: &str
 }
 
 /// A name without what programs do differently.
-fn plain(name: &str) -> String {
+pub(crate) fn plain(name: &str) -> String {
     let is_separator = |sign: &char| matches!(sign, ' ' | '_' | '-' | '.' | ':');
     let has_prefix = name.get(..PREFIX.len()).is_some_and(|p| p.eq_ignore_ascii_case(PREFIX));
     let name = if has_prefix && name.len() > PREFIX.len() { &name[PREFIX.len()..] } else { name };

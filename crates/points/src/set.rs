@@ -245,7 +245,7 @@ impl Values {
 
 impl ColorEncoding {
     /// The stored value at full intensity, which becomes 1.
-    fn full(self) -> f64 {
+    pub(crate) fn full(self) -> f64 {
         match self {
             Self::Fraction => 1.0,
             Self::Srgb8 | Self::Fraction255 => 255.0,

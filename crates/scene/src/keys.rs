@@ -469,10 +469,15 @@ pub(crate) static FILTER: Table = Table {
         ),
         key(
             "voxel",
-            Kind::Number(numbers(SHORT, LARGE, "units of the file")),
+            Kind::Either(&[
+                Kind::Choice(&["auto"]),
+                Kind::Number(numbers(SHORT, LARGE, "units of the file")),
+            ]),
             Words("none", "0.1"),
-            "Edge of cubes, counted from the origin of the file's coordinates, of each of which one \
-             point is taken: the first in the file that meets all other conditions.",
+            "Edge of cubes, counted from the origin of the file's coordinates, in each of which the points \
+             that meet all other conditions become one, their mean; a larger one leaves fewer points. `auto` \
+             takes twice the median distance of points to the nearest other one, which thins what is denser \
+             than the middle.",
         ),
     ],
 };

@@ -36,7 +36,7 @@ pub use scene::{
     ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, PointColumn,
     PointColumns, PointFilter, Polynomial, Primary, Projection, RadiusOf, RayLoop, Refine,
     RenderSettings, Scatter, Scene, Secondary, ShapeRadius, Stop, Surface, SurfaceKind,
-    TextureAxis, Transfer, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
+    TextureAxis, Transfer, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
 };
 pub use schema::{json_schema, suite_json_schema};
 pub use suite::{Shape, Suite, SuiteRow};

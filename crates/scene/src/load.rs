@@ -10,7 +10,7 @@ use crate::{
     ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, PointFilter,
     Polynomial, Primary, Projection, RadiusOf, RayLoop, Refine, RenderSettings, Scatter, Scene,
     SceneError, Secondary, ShapeRadius, Stop, Surface, SurfaceKind, TextureAxis, Transfer,
-    Transform, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
+    Transform, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
 };
 use std::env;
 use std::fs::{self, File};
@@ -378,7 +378,9 @@ impl PointFilter {
             }),
             ranges: table.written_ranges("range"),
             classes: table.written_counts("classification"),
-            voxel: table.written("voxel").map(|_| table.number("voxel")),
+            voxel: (table.written("voxel")).map(|_| {
+                to_number(&table.value("voxel")).map_or(VoxelEdge::Auto, VoxelEdge::Length)
+            }),
         }
     }
 }

@@ -254,8 +254,17 @@ pub struct PointFilter {
     pub ranges: Vec<(String, [f64; 2])>,
     /// Values of `classification`, 0 to 255.
     pub classes: Option<Vec<u32>>,
-    /// Edge of cubes with one point each, 1e-12 to 1e15.
-    pub voxel: Option<f64>,
+    /// Cubes whose points become one.
+    pub voxel: Option<VoxelEdge>,
+}
+
+/// The edge of the cubes that a filter makes points of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum VoxelEdge {
+    /// Twice the median distance of points to the nearest other one.
+    Auto,
+    /// 1e-12 to 1e15.
+    Length(f64),
 }
 
 /// A volume made of an object's points (docs/method.md, section 7). Lengths are scene units.

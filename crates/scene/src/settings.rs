@@ -4,7 +4,7 @@ use crate::{
     Albedo, Boundary, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Normals, Object,
     PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, Projection, Refine,
     RenderSettings, Scene, Surface, TextureAxis, Transfer, Units, Volume, VolumeKernel, VolumeMode,
-    VolumeShading,
+    VolumeShading, VoxelEdge,
 };
 use std::fmt::{self, Write};
 
@@ -149,8 +149,10 @@ fn write_filter(out: &mut String, filter: &PointFilter) -> fmt::Result {
     if let Some(classes) = &filter.classes {
         writeln!(out, "classification = {classes:?}")?;
     }
-    if let Some(voxel) = filter.voxel {
-        writeln!(out, "voxel = {voxel:?}")?;
+    match filter.voxel {
+        Some(VoxelEdge::Length(edge)) => writeln!(out, "voxel = {edge:?}")?,
+        Some(VoxelEdge::Auto) => writeln!(out, "voxel = \"auto\"")?,
+        None => {}
     }
     if let Some([min, max]) = filter.bounds {
         writeln!(out, "\n[objects.filter.box]\nmin = {min:?}\nmax = {max:?}")?;

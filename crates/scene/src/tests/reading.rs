@@ -4,7 +4,7 @@ use super::{FULL, SMALL, error, error_with, image_file, read, read_with, stop_co
 use crate::keys::{Kind, SCENE};
 use crate::not_built::NOT_BUILT;
 use crate::*;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[test]
 fn every_built_key_is_read() {
@@ -64,7 +64,7 @@ fn every_built_key_is_read() {
             bounds: Some([[-1.0, 0.0, 4.9e6], [1.0, 0.5, 4.9e6]]),
             ranges: vec![("intensity".into(), [100.0, 2000.5]), ("odd name".into(), [2.0, 2.0])],
             classes: Some(vec![2, 6]),
-            voxel: Some(0.05),
+            voxel: Some(VoxelEdge::Length(0.05)),
         },
         units: Units::Degrees,
         transform: Transform {
@@ -335,8 +335,11 @@ fn filters_are_checked() {
         ("classification=2", "objects[0].filter.classification: found 2, expected a list of 1 to"),
         ("classification=[]", "objects[0].filter.classification: found a list of 0, expected"),
         ("classification=[256]", "classification[0]: found 256, expected an integer from 0 to 255"),
-        ("voxel=0", "objects[0].filter.voxel: found 0, expected a number from 1e-12 to 1e15 units"),
-        ("voxel=\"auto\"", "objects[0].filter.voxel: found the string \"auto\", expected a number"),
+        ("voxel=0", "objects[0].filter.voxel: found 0, expected \"auto\", or a number from"),
+        (
+            "voxel=\"first\"",
+            "objects[0].filter.voxel: found the string \"first\", expected \"auto\", or",
+        ),
     ] {
         let error = error_with(FULL, &[&format!("objects.0.filter.{set}")]);
         assert!(error.contains(expected), "{error}\nlacks {expected}");
@@ -344,6 +347,10 @@ fn filters_are_checked() {
     let set = ["objects.1.filter.every=10", "objects.1.filter.range.z=[0, 1]"];
     let filter = &read_with(FULL, &set).unwrap().objects[1].filter;
     assert_eq!((filter.every, filter.ranges.len(), filter.voxel), (10, 1, None));
+    let of_auto = read_with(FULL, &["objects.1.filter.voxel=auto"]).unwrap();
+    assert_eq!(of_auto.objects[1].filter.voxel, Some(VoxelEdge::Auto));
+    let again = Scene::from_toml(&of_auto.settings_toml(), Path::new("again.toml"), &[]).unwrap();
+    assert_eq!(again.objects[1].filter.voxel, Some(VoxelEdge::Auto));
 }
 
 #[test]
