@@ -13,6 +13,7 @@ mod columns;
 mod curve;
 #[cfg(feature = "device")]
 pub mod device;
+mod dimension;
 mod distinct;
 mod e57;
 mod error;
@@ -57,6 +58,7 @@ mod watch;
 
 pub use assign::{Column, Columns};
 pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange, bounds_of, origin_of};
+pub use dimension::{Dimension, Sign};
 pub use error::PointsError;
 pub use filter::Filter;
 pub use grid::{BALL_MARGIN, Grids, plan_grids};
