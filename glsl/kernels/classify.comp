@@ -29,14 +29,15 @@ layout(std430, binding = WAVE_LIT_HITS) writeonly buffer LitHits { LitHit lit_hi
 layout(push_constant) uniform Push { WaveParams params; };
 #include "path.glsl"
 #include "media.glsl"
+#include "way.glsl"
 #include "film.glsl"
 #include "marks.glsl"
 
 // Rays that a ray makes at a surface that is not diffuse.
-uint rays_behind(Path path, Media media, uint object) {
+uint rays_behind(Path path, Media media, uint object, uint way) {
     bool spent = path.bounces >= params.max_bounces;
     if (object_at(object).material != MATERIAL_GLASS) return spent ? 0u : 1u;
-    Crossing crossing = crossing_of(media, object);
+    Crossing crossing = crossing_of(media, object, way);
     bool passes = crossing.before == crossing.after;
     uint count = splits(crossing, path.channels) ? 3u : 1u;
     return passes ? (path.crossings < MOST_CROSSINGS ? 1u : 0u) : (spent ? 0u : count);
@@ -71,7 +72,10 @@ void main() {
         }
     }
     if (scene_has(SCENE_SCATTERS)) {
-        if (found && !is_diffuse) mark_scattering(at, rays_behind(path, media, object));
+        if (found && !is_diffuse) {
+            uint way = way_through_point(ray.hit_slot, ray.origin, ray.direction, ray.hit_t);
+            mark_scattering(at, rays_behind(path, media, object, way));
+        }
     }
 
     bool from_camera = (params.flags & uint(WAVE_FROM_CAMERA)) != 0u;

@@ -26,6 +26,7 @@
 #include "math.glsl"
 #include "levels.glsl"
 #include "scene.glsl"
+#include "shape.glsl"
 #include "polynomial.glsl"
 #include "state.glsl"
 #include "records.glsl"
@@ -99,11 +100,16 @@ void main() {
 #ifdef LEAVES
             bool own = p.object == left_object && same_sheet(p, o, left_normal);
             float from = own ? SHEET_REACH * p.center_trust.w : 0.0;
+            if (scene_has(SCENE_SPHERES)) from = is_sphere(p.gradient_offset.xyz) ? 0.0 : from;
 #else
             float from = 0.0;
 #endif
             float t = intersect(o, d, p, from);
 #ifdef LEAVES
+            if (scene_has(SCENE_SPHERES)) {
+                bool is_left = slot == ray.left && is_sphere(p.gradient_offset.xyz);
+                t = is_left ? far_side(o, d, p.center_trust.xyz) : t;
+            }
             if (scene_has(SCENE_VOLUMES)) t = p.object == params.passed ? NO_HIT : t;
 #endif
             bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);

@@ -35,6 +35,7 @@ layout(std430, binding = WAVE_TALLY) buffer Tally { uint dark_count; uint reflec
 layout(push_constant) uniform Push { WaveParams params; };
 #include "path.glsl"
 #include "media.glsl"
+#include "way.glsl"
 #include "film.glsl"
 
 #ifdef QUEUE
@@ -75,17 +76,17 @@ uint next_offset_of(uint word) {
 void store_path(uint to, uint from, Path path, vec3 throughput, uint channels, bool bounces, bool toggles, uint object,
                 uint place) {
     uint count = path.media_count;
-    bool leaves = place < count;
+    bool leaves = place < count, enters = place == count;
     next_paths[to].throughput = throughput;
     next_paths[to].pixel = path.pixel;
     next_paths[to].channels = channels | (bounces && !toggles ? uint(PATH_REFLECTED) : 0u);
     next_paths[to].bounces = path.bounces + (bounces ? 1u : 0u);
     next_paths[to].crossings = path.crossings + (bounces ? 0u : 1u);
-    uint after = leaves ? count - 1u : min(count + 1u, MOST_MEDIA);
+    uint after = leaves ? count - 1u : min(count + (enters ? 1u : 0u), MOST_MEDIA);
     next_paths[to].media_count = toggles ? after : count;
     if (scene_has(SCENE_NESTED)) {
         uint last = count > 0u ? count - 1u : 0u; // where one is left, the last takes its place
-        uint moved = toggles ? (leaves ? place : count) : MOST_MEDIA;
+        uint moved = toggles && (leaves || enters) ? (leaves ? place : count) : MOST_MEDIA;
         uint mover = leaves ? member_of(Media(from, count), last) : object;
         for (uint word = 0u; word < uint(MEDIA_WORDS); ++word) {
             uint both = media_word(from, word);
@@ -153,7 +154,10 @@ void main() {
     vec3 albedo = object_at(object).albedo;
     uint all = path.channels & uint(CHANNELS_ALL);
     Crossing crossing = Crossing(NONE, NONE, MOST_MEDIA);
-    if (is_glass) crossing = crossing_of(Media(at, path.media_count), object);
+    if (is_glass) {
+        uint way = way_through_point(ray.hit_slot, ray.origin, ray.direction, ray.hit_t);
+        crossing = crossing_of(Media(at, path.media_count), object, way);
+    }
 
     uint bit = at & 31u, below = (1u << bit) - 1u;
     uvec2 marks = next_marks_of(at / 32u);

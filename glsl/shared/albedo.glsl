@@ -34,7 +34,8 @@ bool has_none(ObjectInfo object, vec3 value) {
 }
 
 // The mean over the points of the object around x that have a value, by the weights of normals that are blended; where
-// none has a weight, or it has no value, what the point at `slot` has. The object's points have values.
+// none has a weight, it has no value, or is a sphere or disc, what the point at `slot` has. The object's points have
+// values.
 // First the trust balls that hold x, up to 32 into a bit mask, then their weights: few of a cell do.
 vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
     vec3 own = value_of(object, slot);
@@ -43,9 +44,11 @@ vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
     uvec2 slots = uvec2(object.first_slot, object.slot_count);
     Around around = points_around(x, slots);
     uvec2 range = around.range;
-    uint end = object.first_color != NONE && !around.several ? min(range.y, range.x + MOST_ASKED) : range.x;
+    bool is_shape = scene_has(SCENE_SHAPES) && is_shape_of(object, slot);
+    bool asks = object.first_color != NONE && !is_shape;
+    uint end = asks && !around.several ? min(range.y, range.x + MOST_ASKED) : range.x;
     if (scene_has(SCENE_LEVELS)) {
-        if (around.several) {
+        if (around.several && !is_shape) {
             Merge merge = merge_around(x, slots);
             uint near = next_around(merge, x, slots);
             while (near != NONE) {
@@ -80,7 +83,8 @@ vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
             weights += weight;
         }
     }
-    return has_none(object, own) ? vec3(-own.x, own.yz) : sum / weights;
+    vec3 mean = is_shape ? own : sum / weights;
+    return has_none(object, own) ? vec3(-own.x, own.yz) : mean;
 }
 
 // The albedo at x of the object at `index`, whose point at `slot` was hit.

@@ -54,6 +54,13 @@
 #define CLIP_CLIPS 0
 #define CLIP_POLYNOMIALS 1
 
+// shape_spheres, shape_discs
+#define SHAPE_POINTS 0
+#define SHAPE_RADII 1
+#define SHAPE_POLYNOMIALS 2
+#define SHAPE_OUTCOMES 3
+#define SHAPE_NORMALS 4
+
 // grid_count, grid_emit, grid_emit_large, grid_ranges
 #define GRID_INFO 0
 #define GRID_POLYNOMIALS 1
@@ -176,6 +183,8 @@
 #define SCENE_MANY_LIGHTS 65536 // more than one
 #define SCENE_SKIPS 131072  // rays leave empty cells together
 #define SCENE_LEVELS 262144 // several grids
+#define SCENE_SHAPES 524288 // some points are spheres or discs
+#define SCENE_SPHERES 1048576 // some are spheres
 
 // What transparent pictures leave the background out of.
 #define TRANSPARENT_CAMERA 1 // camera rays
@@ -221,6 +230,8 @@
 #define FIT_PLANE 1
 #define FIT_INCOMPLETE 2
 #define FIT_FULL 3
+#define FIT_DISC 4 // no fit: the point is drawn as a disc
+#define FIT_SPHERE 5
 
 // What an image's texels are.
 #define IMAGE_SRGB8 0  // red, green, blue in sRGB, a byte each, from the lowest byte of a word on
@@ -326,11 +337,20 @@ struct ClipParams {      // 4 bytes
     uint count;          // 0
 };
 
+// Of one batch of spheres or discs.
+struct ShapeParams {     // 20 bytes
+    uint first_slot;     //  0  of this batch
+    uint count;          //  4  in this batch
+    uint object;         //  8
+    uint bound_from;     // 12  slot that the buffers by slot are bound from
+    uint has_normals;    // 16  1: normals are given; 0: of discs, planes were fitted
+};
+
 struct FitParams {       // 48 bytes
     uint first_slot;     //  0  of this batch
     uint point_count;    //  4  in this batch
     uint neighbors;      //  8  entries a point in the list of neighbours, a multiple of four
-    uint polynomial;     // 12  FIT_FULL or FIT_INCOMPLETE: the first kind tried
+    uint polynomial;     // 12  FIT_FULL, FIT_INCOMPLETE or FIT_PLANE: the first kind tried
     float feature_size;  // 16  h for all points; 0: the distance to the last neighbour; -1: sizes
     float trust;         // 20  b / h
     uint object;         // 24
@@ -523,7 +543,7 @@ struct ObjectInfo {      // 112 bytes
     uint polynomial;     // 20  FIT_FULL or FIT_INCOMPLETE: what refinement fits first
     uint max_iterations; // 24  of the refinement; 0: hits are taken as they are
     float tolerance;     // 28  of the refinement, over h
-    uint slot_count;     // 32
+    uint slot_count;     // 32  that carry its surface; behind these its spheres and discs
     float weight_scale;  // 36  h over the width of the weights
     uint blends;         // 40  1: normals are blended over the polynomials around a hit
     uint texture;        // 44  an image, or NONE

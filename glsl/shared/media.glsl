@@ -4,7 +4,8 @@
 // After Schmidt and Budge, Simple Nested Dielectrics in Ray Traced Images (2002): a ray carries the
 // set of glass objects that it is inside, a hit on one toggles its membership, and the member of the
 // highest priority is the medium (ties: the last in the scene). Whoever includes this has media_word(ray, word),
-// and tells the count of media. Where a scene has one object of glass, that is the one member there may be.
+// and tells the count of media. Where a scene has one object of glass, that is the one member there may be, but for
+// an object of spheres, which is a member once for each sphere that the ray is inside.
 #ifndef MEDIA_GLSL
 #define MEDIA_GLSL
 #include "layout.glsl"
@@ -58,10 +59,22 @@ uint place_of(Media media, uint object) {
 struct Crossing {
     uint before; // the medium that it comes from, or NONE
     uint after;  // the one that it would go on in, or NONE
-    uint place;  // of the object among the members; their count: it is entered
+    uint place;  // of the object among the members; their count: it is entered; NONE: neither entered nor left
 };
 
-Crossing crossing_of(Media media, uint object) {
+// Which way a ray goes through a surface.
+#define WAY_EITHER 0u // into the object, unless it is inside
+#define WAY_IN 1u
+#define WAY_OUT 2u
+
+// Spheres of an object that overlap are one body: how many of them the ray is inside.
+uint times_in(Media media, uint object) {
+    uint times = 0u;
+    for (uint i = 0u; i < media.count; ++i) times += member_of(media, i) == object ? 1u : 0u;
+    return times;
+}
+
+Crossing crossing_of(Media media, uint object, uint way) {
     uint place = place_of(media, object);
     bool leaves = place < media.count;
     uint others = NONE;
@@ -71,7 +84,16 @@ Crossing crossing_of(Media media, uint object) {
         rules = others == NONE || outranks(object, others == NONE ? object : others);
     }
     uint with = rules ? object : others;
-    return Crossing(leaves ? with : others, leaves ? others : with, place);
+    uint before = leaves ? with : others, after = leaves ? others : with;
+    if (scene_has(SCENE_SPHERES)) {
+        uint times = times_in(media, object);
+        bool goes_in = way == WAY_IN, goes_out = way == WAY_OUT;
+        uint beside = times > (goes_in ? 0u : 1u) ? with : others;
+        before = goes_in ? beside : (goes_out ? with : before);
+        after = goes_in ? with : (goes_out ? beside : after);
+        place = goes_in ? media.count : (goes_out && times == 0u ? NONE : place);
+    }
+    return Crossing(before, after, place);
 }
 
 vec3 ior_of(uint medium) {

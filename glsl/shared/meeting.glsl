@@ -42,9 +42,9 @@ vec3 blended_normal(vec3 x, vec3 normal, uint object) {
             holding |= dot3(y, y) < ball.w * ball.w ? 1u << i : 0u;
         }
         while (holding != 0u) {
-            Polynomial p = polynomial_of(slot_at(first + uint(findLSB(holding))));
+            uint near = slot_at(first + uint(findLSB(holding)));
             holding &= holding - 1u;
-            if (p.object == object) sum += weighted_normal(p, x, normal);
+            if (near - slots.x < slots.y) sum += weighted_normal(polynomial_of(near), x, normal);
         }
     }
     return normalize3(sum);
@@ -62,11 +62,12 @@ Meeting meeting_of(Ray ray) {
     Polynomial p = polynomial_of(ray.hit_slot);
     vec3 y, normal;
     surface_at(ray.origin, ray.direction, ray.hit_t, p, y, normal);
-    bool refined = scene_has(SCENE_REFINES) && object_at(p.object).max_iterations > 0u;
+    bool is_shape = scene_has(SCENE_SHAPES) && is_shape_of(object_at(p.object), ray.hit_slot);
+    bool refined = scene_has(SCENE_REFINES) && object_at(p.object).max_iterations > 0u && !is_shape;
     vec3 x = p.center_trust.xyz + y;
     vec3 blended = normal;
     if (scene_has(SCENE_BLENDS)) {
-        if (object_at(p.object).blends != 0u && !refined) blended = blended_normal(x, normal, p.object);
+        if (object_at(p.object).blends != 0u && !refined && !is_shape) blended = blended_normal(x, normal, p.object);
     }
     normal = dot3(blended, ray.direction) < 0.0 ? blended : normal; // at an outline it may look away
     return Meeting(x, normal, p.object, refined);

@@ -17,6 +17,10 @@ uint object_of(uint slot) {
     return texelFetch(polynomial_texels, int(4u * slot) + 3).z;
 }
 
+vec3 gradient_of(uint slot) {
+    return uintBitsToFloat(texelFetch(polynomial_texels, int(4u * slot) + 1).xyz);
+}
+
 uint index_of(uint slot) {
     return texelFetch(polynomial_texels, int(4u * slot) + 3).w;
 }
@@ -36,6 +40,10 @@ vec4 center_trust_of(uint slot) {
 
 uint object_of(uint slot) {
     return polynomials[slot].object;
+}
+
+vec3 gradient_of(uint slot) {
+    return polynomials[slot].gradient_offset.xyz;
 }
 
 uint index_of(uint slot) {

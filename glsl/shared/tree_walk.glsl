@@ -11,6 +11,7 @@
 #include "polynomial.glsl"
 #include "records.glsl"
 #include "scene.glsl"
+#include "shape.glsl"
 #include "state.glsl"
 #include "tree.glsl"
 
@@ -144,6 +145,7 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
 #ifdef LEAVES
             bool own = p.object == left_object && same_sheet(p, o, left_normal);
             float from = own ? SHEET_REACH * p.center_trust.w : 0.0;
+            if (scene_has(SCENE_SPHERES)) from = is_sphere(p.gradient_offset.xyz) ? 0.0 : from;
 #else
             float from = 0.0;
 #endif
@@ -151,6 +153,10 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
             bool near = near_trust_ball(o, d, p.center_trust, ray.hit_t);
             float t = near ? intersect(o, d, p, from) : NO_HIT;
 #ifdef LEAVES
+            if (scene_has(SCENE_SPHERES)) {
+                bool is_left = near && slot == ray.left && is_sphere(p.gradient_offset.xyz);
+                t = is_left ? far_side(o, d, p.center_trust.xyz) : t;
+            }
             if (scene_has(SCENE_VOLUMES)) t = p.object == passed ? NO_HIT : t;
 #endif
             bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);

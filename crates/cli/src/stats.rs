@@ -2,7 +2,9 @@
 
 use crate::engine::{Built, Engine, Frame};
 use film::Film;
-use kernels::layout::{FIT_FULL, FIT_INCOMPLETE, FIT_NO_SURFACE, FIT_PLANE, GridLevel};
+use kernels::layout::{
+    FIT_DISC, FIT_FULL, FIT_INCOMPLETE, FIT_NO_SURFACE, FIT_PLANE, FIT_SPHERE, GridLevel,
+};
 use plan::Plan;
 use render::Traversal;
 use schemars::JsonSchema;
@@ -144,6 +146,10 @@ pub struct Fits {
     pub incomplete: u64,
     /// A plane.
     pub plane: u64,
+    /// No fit: drawn as a disc.
+    pub disc: u64,
+    /// No fit: drawn as a sphere.
+    pub sphere: u64,
     /// No surface.
     pub none: u64,
 }
@@ -304,6 +310,8 @@ impl Fits {
             full: count(FIT_FULL),
             incomplete: count(FIT_INCOMPLETE),
             plane: count(FIT_PLANE),
+            disc: count(FIT_DISC),
+            sphere: count(FIT_SPHERE),
             none: count(FIT_NO_SURFACE),
         }
     }

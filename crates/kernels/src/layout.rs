@@ -114,6 +114,16 @@ constants! {
     CLIP_CLIPS = 0;
     /// Binding of `clip_balls`: polynomials.
     CLIP_POLYNOMIALS = 1;
+    /// Binding of `shape_spheres` and `shape_discs`: points.
+    SHAPE_POINTS = 0;
+    /// Binding of `shape_spheres` and `shape_discs`: the radius of each of the batch.
+    SHAPE_RADII = 1;
+    /// Binding of `shape_spheres` and `shape_discs`: polynomials.
+    SHAPE_POLYNOMIALS = 2;
+    /// Binding of `shape_spheres` and `shape_discs`: [`FitOutcome`]s.
+    SHAPE_OUTCOMES = 3;
+    /// Binding of `shape_discs`: three floats for each of the batch, where normals are given.
+    SHAPE_NORMALS = 4;
     /// Binding of the grid build: [`GridInfo`].
     GRID_INFO = 0;
     /// Binding of the grid build: polynomials.
@@ -330,6 +340,10 @@ constants! {
     SCENE_SKIPS = 131_072;
     /// Bit of the specialization constant `SCENE`: the scene has several grids.
     SCENE_LEVELS = 262_144;
+    /// Some points are drawn as spheres or discs.
+    SCENE_SHAPES = 524_288;
+    /// Some are drawn as spheres.
+    SCENE_SPHERES = 1_048_576;
     /// Grids of a scene, at most.
     MOST_LEVELS = 16;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
@@ -387,6 +401,10 @@ constants! {
     FIT_INCOMPLETE = 2;
     /// The polynomial with linear terms.
     FIT_FULL = 3;
+    /// No fit: the point is drawn as a disc.
+    FIT_DISC = 4;
+    /// No fit: the point is drawn as a sphere.
+    FIT_SPHERE = 5;
     /// An image of red, green, blue in sRGB, a byte each, from the lowest byte of a word on.
     IMAGE_SRGB8 = 0;
     /// An image of red, green, blue as three floats, linear.
@@ -587,6 +605,25 @@ pub struct ClipParams {
 }
 gpu_layout!(ClipParams, 4, { count: 0 });
 
+/// Push constants of `shape_spheres` and `shape_discs`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ShapeParams {
+    /// First slot of this batch.
+    pub first_slot: u32,
+    /// Slots in this batch.
+    pub count: u32,
+    /// Index of the object in the scene.
+    pub object: u32,
+    /// Slot that the buffers by slot are bound from.
+    pub bound_from: u32,
+    /// 1: normals are given; 0: of discs, planes were fitted.
+    pub has_normals: u32,
+}
+gpu_layout!(ShapeParams, 20, {
+    first_slot: 0, count: 4, object: 8, bound_from: 12, has_normals: 16,
+});
+
 /// Push constants of `fit_polynomials`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -597,7 +634,7 @@ pub struct FitParams {
     pub point_count: u32,
     /// Entries a point in the list of neighbours, a multiple of four; of a plan: k.
     pub neighbors: u32,
-    /// `FIT_FULL` or `FIT_INCOMPLETE`: the first kind tried.
+    /// `FIT_FULL`, `FIT_INCOMPLETE` or `FIT_PLANE`: the first kind tried.
     pub polynomial: u32,
     /// h for all points; 0: the distance to the last neighbour; −1: given for each.
     pub feature_size: f32,
@@ -1022,7 +1059,7 @@ pub struct ObjectInfo {
     pub max_iterations: u32,
     /// Of the refinement, over h.
     pub tolerance: f32,
-    /// Slots of the object.
+    /// Slots that carry the object's surface; behind these come its spheres and discs.
     pub slot_count: u32,
     /// h over the width of the weights.
     pub weight_scale: f32,
@@ -1408,6 +1445,7 @@ pub const STRUCTS: &[StructLayout] = &[
     SmoothParams::LAYOUT,
     BallClip::LAYOUT,
     ClipParams::LAYOUT,
+    ShapeParams::LAYOUT,
     FitParams::LAYOUT,
     GridInfo::LAYOUT,
     GridLevel::LAYOUT,

@@ -176,6 +176,10 @@ modules! {
     shadow_rays,
     /// `shadow_rays` for rays in a queue.
     shadow_rays_queue,
+    /// Discs as polynomials.
+    shape_discs,
+    /// Spheres as polynomials.
+    shape_spheres,
     /// How far empty cells are from others.
     skip_cells,
     /// Feature sizes as means over neighbours.

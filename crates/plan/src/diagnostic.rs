@@ -65,7 +65,8 @@ impl Diagnostic {
                 "distance of the hit from its point over the trust radius, 0 to 1, or -1"
             }
             Self::Fit => {
-                "polynomial of the point that was hit: 1 plane, 2 incomplete, 3 full, or -1"
+                "polynomial of the point that was hit: 1 plane, 2 incomplete, 3 full, or what else it is \
+                 drawn as: 4 disc, 5 sphere, or -1"
             }
         }
     }

@@ -1,34 +1,51 @@
-//! Which media the camera is in, where given normals say so (docs/method.md, section 6).
+//! Which media the camera is in, where given normals or spheres say so (docs/method.md, section 6).
 //!
 //! Rays start outside of everything, and hits tell what they enter and leave: a ray alone cannot know
-//! that it began inside. Normals of a file point outwards, so the points nearest to the eye know.
+//! that it began inside. Normals of a file point outwards, so the points nearest to the eye know; of an object of
+//! spheres, each of them does.
 
 use crate::bulk::World;
 use kernels::layout::MEDIA_WORDS;
-use points::PointSet;
-use scene::{MaterialKind, Scene};
+use points::{Cloud, PointSet, ShapeKind, Shapes};
+use scene::{MaterialKind, Object, Scene, SurfaceKind};
 use std::sync::Arc;
 
 /// Points asked: one normal alone may be wrong.
 const ASKED: usize = 8;
 
-/// The objects of glass that the eye is inside of, as many as a path can hold. `world` has the points of
-/// each object in the world.
+/// The objects of glass that the eye is inside of, as many as a path can hold; those of spheres once for each sphere.
+/// `world` has the points of each object in the world.
 pub(crate) fn media_of_eye(
     scene: &Scene,
     sets: &[Arc<PointSet>],
     world: &[World],
+    (cloud, shapes): (&Cloud, &[Shapes]),
     eye: [f64; 3],
 ) -> Vec<u32> {
+    let is_glass = |object: &Object| matches!(object.material.kind, MaterialKind::Glass { .. });
+    let spheres = (shapes.iter())
+        .filter(|shapes| shapes.kind == ShapeKind::Sphere)
+        .filter(|shapes| is_glass(&scene.objects[shapes.object as usize]))
+        .flat_map(|shapes| {
+            let points = &cloud.points[shapes.slots().range()];
+            let holds = points.iter().zip(&shapes.radii).filter(|(point, radius)| {
+                let from =
+                    |axis: usize| eye[axis] - cloud.origin[axis] - f64::from(point.position[axis]);
+                let square: f64 = [0, 1, 2].map(|axis| from(axis) * from(axis)).iter().sum();
+                square < f64::from(**radius) * f64::from(**radius)
+            });
+            holds.map(|_| shapes.object)
+        });
     let inside = scene.objects.iter().zip(sets).zip(world).zip(0u32..).filter_map(
         |(((object, set), positions), index)| {
-            let glass = matches!(object.material.kind, MaterialKind::Glass { .. });
-            let normals = set.normals.as_ref().filter(|_| glass)?;
+            let by_normals =
+                is_glass(object) && !matches!(object.surface.kind, SurfaceKind::Spheres(_));
+            let normals = set.normals.as_ref().filter(|_| by_normals)?;
             let turned = |i: usize| object.transform.rotate(normals[i].map(f64::from));
             is_inside(positions, turned, eye).then_some(index)
         },
     );
-    inside.take(2 * MEDIA_WORDS as usize).collect()
+    inside.chain(spheres).take(2 * MEDIA_WORDS as usize).collect()
 }
 
 /// Whether most of the nearest points have the eye behind them.

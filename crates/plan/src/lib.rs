@@ -44,8 +44,8 @@ use kernels::layout::{
     LIGHT_POINT, MATERIAL_DIFFUSE, MATERIAL_GLASS, MEDIA_WORDS, NONE, ObjectInfo, SCENE_ABSORBS,
     SCENE_ALPHA, SCENE_BLENDS, SCENE_CHANCE, SCENE_DIAGNOSTICS, SCENE_DIFFUSE, SCENE_DISPERSES,
     SCENE_ENVIRONMENT, SCENE_LIGHTS, SCENE_MANY_LIGHTS, SCENE_NESTED, SCENE_REFINES, SCENE_SAMPLES,
-    SCENE_SCATTERS, SCENE_TEXTURES, SCENE_VALUES, SCENE_VOLUMES, TRANSPARENT_CAMERA,
-    TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
+    SCENE_SCATTERS, SCENE_SHAPES, SCENE_SPHERES, SCENE_TEXTURES, SCENE_VALUES, SCENE_VOLUMES,
+    TRANSPARENT_CAMERA, TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
 };
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
 use points::{Apart, Cloud, PointSet, SlotRange, Unwatched, Watch};
@@ -219,9 +219,15 @@ impl Plan {
             }
             None => NONE,
         };
-        let camera = scene
-            .camera
-            .unwrap_or_else(|| camera::frame(&bulk.world, cloud.bounds, image_size, up));
+        let camera = match scene.camera {
+            Some(camera) => camera,
+            None => {
+                let (world, bounds) = shapes::with_extents(&shapes, &cloud, &bulk.world);
+                camera::frame(&world, bounds, image_size, up)
+            }
+        };
+        let camera_media =
+            inside::media_of_eye(scene, &bulk.sets, &bulk.world, (&cloud, &shapes), camera.eye);
         let view = View::new(&camera, image_size, cloud.origin);
         let lights = scene.lights.iter().map(|light| local_light(light, cloud.origin)).collect();
         let framed = Scene { camera: Some(camera), ..scene.clone() };
@@ -235,7 +241,7 @@ impl Plan {
             secondary: scene.render.secondary,
             point_count: bulk.point_count,
             volumes,
-            camera_media: inside::media_of_eye(scene, &bulk.sets, &bulk.world, camera.eye),
+            camera_media,
             samples: scene.image.samples,
             filter: filter::steps(scene.image.filter, scene.image.filter_width),
             camera: CameraParams { seed: scene.render.seed, ..view.params },
@@ -376,6 +382,7 @@ impl Plan {
             object.material == MATERIAL_GLASS
         }
         let any = |has: fn(&ObjectInfo) -> bool| self.objects.iter().any(has);
+        let spheres = || self.shapes.iter().filter(|shapes| shapes.kind == ShapeKind::Sphere);
         [
             (SCENE_ENVIRONMENT, self.wave.background.environment != NONE),
             (SCENE_BLENDS, any(|object| object.blends != 0)),
@@ -389,6 +396,10 @@ impl Plan {
             (SCENE_DIFFUSE, any(|object| object.material == MATERIAL_DIFFUSE)),
             (SCENE_SCATTERS, self.scatters()),
             (SCENE_NESTED, self.objects.iter().filter(|object| is_glass(object)).count() > 1),
+            // A ray may be inside several spheres of one object.
+            (SCENE_NESTED, spheres().any(|shapes| is_glass(&self.objects[shapes.object as usize]))),
+            (SCENE_SHAPES, !self.shapes.is_empty()),
+            (SCENE_SPHERES, spheres().next().is_some()),
             (SCENE_DISPERSES, self.rays_per_pixel() > 1),
             (SCENE_ABSORBS, any(|object| is_glass(object) && object.absorption != [0.0; 3])),
             (SCENE_CHANCE, self.wave.fresnel != 0),

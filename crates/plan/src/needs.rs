@@ -109,6 +109,8 @@ mod tests {
         assert_eq!(wanted(""), (true, false, vec![]));
         assert_eq!(wanted("material.kind = \"glass\""), (false, true, vec![]));
         assert_eq!(wanted("material.albedo = [1, 1, 1]"), (false, false, vec![]));
+        let discs = "surface = { kind = \"discs\", radius = \"attribute:size\" }";
+        assert_eq!(wanted(discs), (true, true, vec!["size".to_owned()]));
         let of_attribute = wanted("material.albedo = \"attribute:intensity\"");
         assert_eq!(of_attribute, (false, false, vec!["intensity".to_owned()]));
         let (_, _, places) = wanted("material.texture = \"a.png\"");

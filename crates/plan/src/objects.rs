@@ -94,7 +94,9 @@ pub(crate) fn object_infos(
             },
             slot_count: surfaces[index].count,
             weight_scale: (1.0 / object.surface.weight_width) as f32,
-            blends: u32::from(object.surface.normals == Normals::Blended),
+            blends: u32::from(
+                object.surface.normals == Normals::Blended && surfaces[index].count > 0,
+            ),
             material: optics.material,
             ior: optics.ior,
             priority: optics.priority,

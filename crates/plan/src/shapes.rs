@@ -1,15 +1,24 @@
 //! Spheres and discs: which slots are drawn as such, how large, and how discs lie.
 
 use crate::PlanError;
+use crate::bulk::World;
 use crate::colors::attribute_values;
 use crate::missing::{Lacking, Missing};
+use crate::neighborhoods::length;
+use kernels::layout::Point;
 use points::neighbors::median_spacing;
-use points::{Cloud, FARTHEST, PointSet, SlotRange};
+use points::{Cloud, FARTHEST, PointSet, SlotRange, bounds_of};
 pub use points::{ShapeKind, Shapes};
 use rayon::prelude::*;
 use scene::{MaterialKind, Object, RadiusOf, Scatter, Scene, ShapeRadius, SurfaceKind};
 use std::sync::Arc;
 
+/// Of half the diagonal of a scene's box: spheres and discs that reach farther are framed with their extents, unless
+/// they are very many.
+const LARGE: f64 = 0.01;
+const MOST_LARGE: usize = 1 << 16;
+/// Of the radius: places so far out, in 26 directions, have the whole sphere in their hull, and perspective's outline.
+const FRAMED: f64 = 1.1;
 /// Of `auto`, over the median distance between nearest points.
 const SHARE: f64 = 0.5;
 /// Normals of a file that are shorter say nothing.
@@ -35,6 +44,40 @@ pub fn scatter_kind(object: &Object) -> Option<ShapeKind> {
             Some(ShapeKind::Sphere)
         }
     }
+}
+
+/// The points that a picture is framed by, and their box: those of the objects, and the extents of shapes that are large
+/// beside the scene.
+pub(crate) fn with_extents(
+    shapes: &[Shapes],
+    cloud: &Cloud,
+    world: &[World],
+) -> (Vec<World>, [[f64; 3]; 2]) {
+    let [low, high] = cloud.bounds;
+    let half = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]));
+    let large = LARGE * half.iter().map(|side| side * side).sum::<f64>().sqrt();
+    let all = shapes
+        .iter()
+        .flat_map(|shapes| cloud.points[shapes.slots().range()].iter().zip(&shapes.radii));
+    let reaching: Vec<_> = all.filter(|(_, radius)| f64::from(**radius) > large).collect();
+    let mut framed = world.to_vec();
+    if reaching.is_empty() || reaching.len() > MOST_LARGE {
+        return (framed, cloud.bounds);
+    }
+    let sides = (0..27).map(|i| [i / 9, i / 3 % 3, i % 3].map(|side| f64::from(side) - 1.0));
+    let directions = sides.filter(|v| length(*v) > 0.0).map(|v| v.map(|x| x / length(v)));
+    let directions: Vec<[f64; 3]> = directions.collect();
+    let extents_of = |(point, radius): (&Point, &f32)| {
+        let (position, reach) = (point.position, FRAMED * f64::from(*radius));
+        let from = |axis: usize| f64::from(position[axis]) + cloud.origin[axis];
+        let center = [0, 1, 2].map(from);
+        let reached = move |v: &[f64; 3]| [0, 1, 2].map(|axis| center[axis] + reach * v[axis]);
+        directions.iter().map(reached).collect::<Vec<_>>()
+    };
+    let extents: Vec<[f64; 3]> = reaching.into_iter().flat_map(extents_of).collect();
+    let bounds = bounds_of([&[low, high][..], &extents]).unwrap_or(cloud.bounds);
+    framed.push(Arc::new(extents));
+    (framed, bounds)
 }
 
 /// The objects of which all points are spheres or discs.

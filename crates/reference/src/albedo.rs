@@ -45,13 +45,16 @@ impl<R: Real> Albedos<'_, R> {
     }
 
     /// The mean over the points of the object around x that have a value; where none has a weight, or the
-    /// point that was hit has no value, what that has.
+    /// point that was hit has no value, or is a sphere or disc, what that has.
     fn blended_value(&self, object: &ObjectInfo, slot: u32, x: V3<R>) -> V3<R> {
         let slots = slots_of(object);
         let own = self.value_of(object, slot);
         if self.has_none(object, slot) {
             let V3([red, green, blue]) = own;
             return V3([R::of(0.0) - red, green, blue]);
+        }
+        if !slots.contains(&slot) {
+            return own;
         }
         let own = (own.times(R::of(1e-6)), R::of(1e-6));
         let around =
@@ -86,7 +89,7 @@ impl<R: Real> Albedos<'_, R> {
     }
 }
 
-/// The slots of an object's points.
+/// The slots of an object's points that carry its surface: behind these come its spheres and discs.
 #[must_use]
 pub fn slots_of(object: &ObjectInfo) -> Range<u32> {
     object.first_slot..object.first_slot + object.slot_count

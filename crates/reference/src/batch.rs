@@ -34,9 +34,14 @@ pub(crate) fn test_batch<R: Real>(
         }
         let own =
             sheet.is_some_and(|(normal, object)| p.object == object && p.same_sheet(o, normal));
-        let from = if own { R::of(SHEET_REACH) * p.trust } else { R::of(0.0) };
+        let is_sphere = p.is_sphere();
+        let from = if own && !is_sphere { R::of(SHEET_REACH) * p.trust } else { R::of(0.0) };
         let passed = p.object == ray.passed;
-        let t = if passed { R::of(NO_HIT) } else { p.intersect(o, d, from) };
+        let t = match slot == ray.left && is_sphere {
+            _ if passed => R::of(NO_HIT),
+            true => p.far_side(o, d),
+            false => p.intersect(o, d, from),
+        };
         let first_of_equals = || {
             polynomials
                 .get(ray.hit_slot as usize)

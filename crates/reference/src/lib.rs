@@ -36,6 +36,7 @@ pub mod refine;
 pub mod rim;
 pub mod sampler;
 pub mod shade;
+pub mod shape;
 pub mod surface_hit;
 pub mod volume;
 mod wave;
@@ -48,11 +49,11 @@ use disc_bin::{DiscLists, disc_bin};
 use fit_polynomials::Fitted;
 use grid_build::CellLists;
 use grid_trace::grid_trace;
-use kernels::layout::{FilmPixel, FitOutcome, VOLUME_LIGHTS};
+use kernels::layout::{FilmPixel, FitOutcome, FitParams, VOLUME_LIGHTS};
 use levels::Levels;
 use plan::{Picture, Plan, Rays, Window};
 use point_light::point_lights;
-use points::{Grids, NeighborSearch, Rims, SlotRange, Watch, plan_grids};
+use points::{Cloud, Grids, NeighborSearch, Rims, SlotRange, Watch, plan_grids};
 use polynomial::Polynomial;
 use rayon::prelude::*;
 use real::Real;
@@ -89,7 +90,28 @@ pub fn fit_surfaces<R: Real>(plan: &Plan, watch: &dyn Watch) -> Option<(Vec<Fitt
     let cloud = &plan.cloud;
     let mut fitted: Vec<Fitted<R>> = Vec::with_capacity(cloud.points.len());
     let mut rims = Rims::default();
-    for params in plan.fits.iter().filter(|params| params.point_count > 0) {
+    for (object, params) in (0u32..).zip(&plan.fits) {
+        fit_points(cloud, params, (&mut fitted, &mut rims), watch)?;
+        for shapes in plan.shapes.iter().filter(|shapes| shapes.object == object) {
+            let mut planes = Vec::new();
+            if let Some(params) = shapes.plane_fit() {
+                fit_points(cloud, &params, (&mut planes, &mut rims), watch)?;
+            }
+            fitted.extend(shape::shapes_of(&cloud.points, shapes, &planes));
+        }
+    }
+    Some((fitted, rims))
+}
+
+/// Adds the fits of some points of an object, by slot, and the rims among them; `None` where the watcher asked for an
+/// end.
+fn fit_points<R: Real>(
+    cloud: &Cloud,
+    params: &FitParams,
+    (fitted, rims): (&mut Vec<Fitted<R>>, &mut Rims),
+    watch: &dyn Watch,
+) -> Option<()> {
+    if params.point_count > 0 {
         let slots = SlotRange { first_slot: params.first_slot, count: params.point_count };
         let range = slots.range();
         let search = NeighborSearch::new(&cloud.points[range.clone()], slots.first_slot);
@@ -128,7 +150,7 @@ pub fn fit_surfaces<R: Real>(plan: &Plan, watch: &dyn Watch) -> Option<(Vec<Fitt
             watch.done(fitted.len() as u64);
         }
     }
-    Some((fitted, rims))
+    Some(())
 }
 
 /// The neighbours of all points of an object, and the sizes that those say.
@@ -311,9 +333,10 @@ impl<R: Real> Reference<R> {
         while let Some(hit) = surface_hit(ray, &self.polynomials) {
             let object = self.polynomials[ray.hit_slot as usize].object;
             let info = &plan.objects[object as usize];
-            if info.max_iterations == 0 {
+            let is_shape = !slots_of(info).contains(&ray.hit_slot);
+            if info.max_iterations == 0 || is_shape {
                 let mut hit = hit;
-                if info.blends != 0 {
+                if info.blends != 0 && !is_shape {
                     let (x, n) = (hit.position, hit.normal);
                     let (lists, polynomials) = (&self.lists, &self.polynomials);
                     let blended =

@@ -11,6 +11,17 @@ const MOST_MEDIA: usize = 2 * MEDIA_WORDS as usize;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Media(Vec<u32>);
 
+/// Which way a ray goes through a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// Into the object, unless it is inside.
+    Either,
+    /// Into it: into one more of its spheres.
+    In,
+    /// Out of it, or of one of its spheres.
+    Out,
+}
+
 /// A ray's way through the surface of a glass object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Crossing {
@@ -56,29 +67,40 @@ impl Media {
         self.medium_without(None, objects)
     }
 
-    /// What entering or leaving an object means.
+    /// What entering or leaving an object means. Spheres of an object that overlap are one body.
     #[must_use]
-    pub fn crossing(&self, object: u32, objects: &[ObjectInfo]) -> Crossing {
+    pub fn crossing(&self, object: u32, way: Way, objects: &[ObjectInfo]) -> Crossing {
         let others = self.medium_without(Some(object), objects);
         let rules = others.is_none_or(|other| outranks(object, other, objects));
         let with = if rules { Some(object) } else { others };
-        if self.0.contains(&object) {
-            Crossing { before: with, after: others }
-        } else {
-            Crossing { before: others, after: with }
+        let times = self.0.iter().filter(|&&member| member == object).count();
+        match way {
+            Way::Either if times > 0 => Crossing { before: with, after: others },
+            Way::Either => Crossing { before: others, after: with },
+            Way::In => Crossing { before: if times > 0 { with } else { others }, after: with },
+            Way::Out => Crossing { before: with, after: if times > 1 { with } else { others } },
         }
     }
 
     /// The same after the object is entered or left.
     #[must_use]
     pub fn toggled(&self, object: u32) -> Self {
+        self.through(object, Way::Either)
+    }
+
+    /// The same after the object, or one of its spheres, is entered or left.
+    #[must_use]
+    pub fn through(&self, object: u32, way: Way) -> Self {
         let mut members = self.0.clone();
-        match members.iter().position(|&member| member == object) {
-            Some(place) => {
+        let place = members.iter().position(|&member| member == object);
+        match (place, way) {
+            (Some(place), Way::Either | Way::Out) => {
                 members.swap_remove(place);
             }
-            None if members.len() < MOST_MEDIA => members.push(object),
-            None => {}
+            (None, Way::Either) | (_, Way::In) if members.len() < MOST_MEDIA => {
+                members.push(object);
+            }
+            _ => {}
         }
         Self(members)
     }
@@ -128,13 +150,19 @@ mod tests {
     fn inside_the_object_of_higher_priority_others_are_passed_through() {
         let objects = objects([5, 2, 0]);
         let water = Media::default().toggled(1);
-        let crossing = water.crossing(0, &objects);
+        let crossing = water.crossing(0, Way::Either, &objects);
         assert_eq!((crossing.before, crossing.after), (Some(1), Some(0)));
         let both = water.toggled(0);
         assert_eq!(both.medium(&objects), Some(0));
-        assert!(both.crossing(1, &objects).passes(), "the water's surface inside the ball");
+        assert!(
+            both.crossing(1, Way::Either, &objects).passes(),
+            "the water's surface inside the ball"
+        );
         let ball = both.toggled(1);
-        assert_eq!(ball.crossing(0, &objects), Crossing { before: Some(0), after: None });
+        assert_eq!(
+            ball.crossing(0, Way::Either, &objects),
+            Crossing { before: Some(0), after: None }
+        );
     }
 
     #[test]
@@ -142,8 +170,27 @@ mod tests {
         let objects = objects([0, 0, 0]);
         let media = Media::default().toggled(2).toggled(0);
         assert_eq!(media.medium(&objects), Some(2));
-        assert!(media.crossing(1, &objects).passes());
-        assert_eq!(media.toggled(2).crossing(1, &objects).after, Some(1));
+        assert!(media.crossing(1, Way::Either, &objects).passes());
+        assert_eq!(media.toggled(2).crossing(1, Way::Either, &objects).after, Some(1));
+    }
+
+    /// Into a sphere, into another that overlaps it, out of the first, out of the second: glass begins and ends once.
+    #[test]
+    fn overlapping_spheres_are_one_body() {
+        let objects = objects([0, 0, 0]);
+        let steps = [Way::In, Way::In, Way::Out, Way::Out];
+        let mut media = Media::default();
+        let crossings = steps.map(|way| {
+            let crossing = media.crossing(1, way, &objects);
+            media = media.through(1, way);
+            crossing
+        });
+        let [first, second, third, last] = crossings;
+        assert_eq!(first, Crossing { before: None, after: Some(1) });
+        assert!(second.passes() && third.passes());
+        assert_eq!(last, Crossing { before: Some(1), after: None });
+        assert!(media.is_empty());
+        assert!(media.through(1, Way::Out).is_empty(), "out of what it was never in");
     }
 
     #[test]

@@ -85,6 +85,7 @@ impl<R: Real> Surroundings<'_, R> {
     /// if its ball was clipped, so that its centre lies elsewhere.
     fn nearest(&self, slots: &[u32], x: V3<R>, stored: u32, clipped: bool) -> u32 {
         let object = self.polynomials[stored as usize].object;
+        let own = slots_of(&self.objects[object as usize]);
         let key = |slot: u32| {
             let point = &self.points[slot as usize];
             let y = V3::of_f32(point.position) - x;
@@ -96,7 +97,7 @@ impl<R: Real> Surroundings<'_, R> {
             best_key.0 = R::of(NO_HIT);
         }
         for &slot in slots {
-            if self.polynomials[slot as usize].object == object && key(slot) < best_key {
+            if own.contains(&slot) && key(slot) < best_key {
                 best = slot;
                 best_key = key(slot);
             }
@@ -108,14 +109,14 @@ impl<R: Real> Surroundings<'_, R> {
     fn fit_at(&self, slots: &[u32], x: V3<R>, h: R, object: u32) -> (Polynomial<R>, u32) {
         let zero = R::of(0.0);
         let inverse_h = R::of(1.0) / h;
+        let own = slots_of(&self.objects[object as usize]);
         let scale = R::of_f32(self.objects[object as usize].weight_scale);
         let weight_square = scale * scale;
         let neighbors = || {
             slots.iter().filter_map(|&slot| {
-                let p = &self.polynomials[slot as usize];
                 let y = (V3::of_f32(self.points[slot as usize].position) - x).times(inverse_h);
                 let square = y.dot(y);
-                let counts = square <= R::of(REACH * REACH) && p.object == object;
+                let counts = square <= R::of(REACH * REACH) && own.contains(&slot);
                 counts.then(|| (y, (-square * weight_square).exp_negative()))
             })
         };

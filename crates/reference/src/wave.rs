@@ -12,7 +12,7 @@ use crate::environment::background_at;
 use crate::grid_trace::grid_trace;
 use crate::isosurface::{blocks, isosurface};
 use crate::levels::Levels;
-use crate::media::{Media, ior_of, transmittance};
+use crate::media::{Media, Way, ior_of, transmittance};
 use crate::optics::{reflected, refraction};
 use crate::real::{NO_HIT, Real, V3};
 use crate::sampler::sample_1d;
@@ -243,8 +243,12 @@ impl<R: Real> PixelTrace<'_, R> {
         let objects = &self.plan.objects;
         let info = &objects[object as usize];
         let (d, n) = (ray.direction, hit.normal);
+        let way = match self.reference.polynomials.get(ray.hit_slot as usize) {
+            Some(hit) => hit.way_through(ray.origin, ray.direction, ray.hit_t),
+            None => Way::Either,
+        };
         let crossing =
-            (info.material == MATERIAL_GLASS).then(|| path.media.crossing(object, objects));
+            (info.material == MATERIAL_GLASS).then(|| path.media.crossing(object, way, objects));
         let passes = crossing.is_some_and(|crossing| crossing.passes());
         let splits = crossing.is_some_and(|crossing| crossing.splits(path.channels, objects));
         let goes_on = if passes {
@@ -289,7 +293,7 @@ impl<R: Real> PixelTrace<'_, R> {
                 reflected,
                 bounces: path.bounces + u32::from(!passes),
                 crossings: path.crossings + u32::from(passes),
-                media: if reflects { path.media.clone() } else { path.media.toggled(object) },
+                media: if reflects { path.media.clone() } else { path.media.through(object, way) },
                 emitted: path.emitted,
                 coverage: path.coverage,
             };

@@ -233,7 +233,7 @@ impl Renderer {
         let surfaces = Surfaces::build(
             device,
             &plan.cloud,
-            &plan.fits,
+            (&plan.fits, &plan.shapes),
             plan.grid_resolution,
             needed(plan, device, rays),
             &plan.volumes.stand_ins(),

@@ -12,12 +12,8 @@ pub(crate) struct NotBuilt {
 }
 
 /// The whole list.
-pub(crate) const NOT_BUILT: &[NotBuilt] = &[
-    NotBuilt { path: "objects.surface.kind", instead: "leave it out" },
-    NotBuilt { path: "objects.surface.radius", instead: "leave it out" },
-    NotBuilt { path: "objects.surface.radius_scale", instead: "leave it out" },
-    NotBuilt { path: "objects.surface.scatter", instead: "leave it out" },
-];
+pub(crate) const NOT_BUILT: &[NotBuilt] =
+    &[NotBuilt { path: "objects.surface.scatter", instead: "leave it out" }];
 
 /// The entry of a key, if it has one.
 pub(crate) fn not_built(path: &str) -> Option<&'static NotBuilt> {

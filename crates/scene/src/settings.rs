@@ -2,9 +2,9 @@
 
 use crate::{
     Albedo, Boundary, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Normals, Object,
-    PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, Projection, Refine,
-    RenderSettings, Scene, Surface, TextureAxis, Transfer, Units, Volume, VolumeKernel, VolumeMode,
-    VolumeShading, VoxelEdge,
+    PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, Projection, RadiusOf, Refine,
+    RenderSettings, Scene, Surface, SurfaceKind, TextureAxis, Transfer, Units, Volume,
+    VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
 };
 use std::fmt::{self, Write};
 
@@ -279,6 +279,7 @@ fn write_surface(out: &mut String, surface: &Surface) -> fmt::Result {
         Polynomial::Incomplete => "incomplete",
     };
     writeln!(out, "\n[objects.surface]")?;
+    write_kind(out, &surface.kind)?;
     writeln!(out, "neighbors = {}", surface.neighbors)?;
     writeln!(out, "polynomial = \"{polynomial}\"")?;
     match surface.feature_size {
@@ -304,6 +305,23 @@ fn write_surface(out: &mut String, surface: &Surface) -> fmt::Result {
     writeln!(out, "weight_width = {:?}", surface.weight_width)?;
     writeln!(out, "close_gaps = {}", surface.close_gaps)?;
     writeln!(out, "boundary_clip = {}", surface.boundary_clip)
+}
+
+fn write_kind(out: &mut String, kind: &SurfaceKind) -> fmt::Result {
+    let (kind, radius) = match kind {
+        SurfaceKind::Points => return writeln!(out, "kind = \"points\""),
+        SurfaceKind::Spheres(radius) => ("spheres", radius),
+        SurfaceKind::Discs(radius) => ("discs", radius),
+    };
+    writeln!(out, "kind = \"{kind}\"")?;
+    match &radius.of {
+        RadiusOf::Spacing => writeln!(out, "radius = \"auto\"")?,
+        RadiusOf::Length(length) => writeln!(out, "radius = {length:?}")?,
+        RadiusOf::Attribute(name) => {
+            writeln!(out, "radius = {}", quoted(&format!("attribute:{name}")))?;
+        }
+    }
+    writeln!(out, "radius_scale = {:?}", radius.scale)
 }
 
 /// A TOML basic string.

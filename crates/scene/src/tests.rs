@@ -98,6 +98,10 @@ material.albedo = "points"
 
 [[objects]]
 points = "c.ply"
+[objects.surface]
+kind = "spheres"
+radius = "attribute:diameter"
+radius_scale = 0.5
 [objects.material]
 albedo = "attribute:intensity \"raw\""
 color_map = "turbo"

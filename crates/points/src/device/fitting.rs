@@ -3,9 +3,10 @@
 use super::BuildError;
 use super::fit::{FitPolynomials, FitPolynomialsIo};
 use super::search::{BATCH, Search, SearchSpace};
+use super::shapes::{ShapesIo, write_shapes};
 use super::smooth::SmoothSizes;
 use super::work::Work;
-use crate::{Cloud, NeighborSearch, Rims, SlotRange, Watch};
+use crate::{Cloud, NeighborSearch, Rims, Shapes, SlotRange, Watch};
 use gpu::{Buffer, Device, GpuError, Kernel};
 use kernels::layout::{FitOutcome, FitParams, Rim};
 use std::sync::Arc;
@@ -30,7 +31,7 @@ pub(crate) struct Fitted {
 pub(crate) fn fit_all(
     device: &Arc<Device>,
     cloud: &Cloud,
-    fits: &[FitParams],
+    (fits, shapes): (&[FitParams], &[Shapes]),
     polynomials: &Buffer,
     work: &mut Work,
     watch: &dyn Watch,
@@ -57,6 +58,11 @@ pub(crate) fn fit_all(
     for fit in fits.iter().filter(|fit| fit.point_count > 0) {
         fitting.object(cloud, fit, polynomials, work, watch)?;
     }
+    for fit in shapes.iter().filter_map(Shapes::plane_fit) {
+        fitting.object(cloud, &fit, polynomials, work, watch)?;
+    }
+    let io = ShapesIo { points: &fitting.points, polynomials, outcomes: &fitting.outcomes };
+    write_shapes(device, work, &io, shapes)?;
     let mut outcomes = vec![FitOutcome { trust: 0.0, kind: 0, feature_size: 0.0 }; count as usize];
     fitting.outcomes.read(0, &mut outcomes)?;
     let Fitting { outcomes: outcome_buffer, rims, searched_on_host, .. } = fitting;

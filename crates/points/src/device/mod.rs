@@ -9,6 +9,7 @@ mod fitting;
 mod grid_build;
 mod scan;
 mod search;
+mod shapes;
 mod skip;
 mod smooth;
 mod sort;
@@ -20,7 +21,7 @@ pub use scan::Scan;
 pub use sort::{Pairs, Sort, SortSpace};
 pub use tree::Tree;
 
-use crate::{Cloud, Grids, Watch, plan_grids};
+use crate::{Cloud, Grids, Shapes, Watch, plan_grids};
 use fitting::{Fitted, fit_all};
 use gpu::{Buffer, Device, GpuError, Kernel};
 use grid_build::{GridBuild, GridBuildIo, LISTED_POINT_BYTES, slab_pairs};
@@ -174,8 +175,8 @@ pub fn kernels_of_structures(
 }
 
 impl Surfaces {
-    /// Fits every point of the cloud and sorts the fits into grids. `fits` has one entry an object;
-    /// `resolution` is the number of cells along the grid's longest axis, 0: chosen. `stand_ins` come behind the
+    /// Fits the points of the cloud, makes the others spheres and discs, and sorts all into grids. `fits` has one entry
+    /// an object; `resolution` is the number of cells along the grid's longest axis, 0: chosen. `stand_ins` come behind the
     /// polynomials of all points, and in no cell and no node.
     ///
     /// # Errors
@@ -183,7 +184,7 @@ impl Surfaces {
     pub fn build(
         device: &Arc<Device>,
         cloud: &Cloud,
-        fits: &[FitParams],
+        (fits, shapes): (&[FitParams], &[Shapes]),
         resolution: u32,
         needed: Needed,
         stand_ins: &[Polynomial],
@@ -199,7 +200,7 @@ impl Surfaces {
         let polynomials = Buffer::paged(device, "polynomials", bytes)?;
         polynomials.write(fitted, stand_ins)?;
         let Fitted { outcomes, outcome_buffer, rims, searched_on_host } =
-            fit_all(device, cloud, fits, &polynomials, &mut work, watch)?;
+            fit_all(device, cloud, (fits, shapes), &polynomials, &mut work, watch)?;
         // Refinement alone reads them on the device.
         let outcome_buffer = match refines {
             true => outcome_buffer,

@@ -43,6 +43,26 @@ fn error_says_where_what_expected_and_what_to_do() {
 }
 
 #[test]
+fn radii_belong_to_spheres_and_discs_and_are_lengths_or_attributes() {
+    let found = |surface: &str| error(&format!("{SMALL}surface = {{ {surface} }}"));
+    for (surface, expected) in [
+        (
+            "radius = 0.1",
+            "surface.radius: belongs to kind \"spheres\" or \"discs\", but kind is \"points\"",
+        ),
+        ("kind = \"spheres\", radius = -0.1", "surface.radius: found -0.1"),
+        ("kind = \"spheres\", radius = 0", "surface.radius: found 0"),
+        ("kind = \"spheres\", radius = nan", "write a finite number"),
+        ("kind = \"discs\", radius = \"attribute:\"", "surface.radius: found"),
+        ("kind = \"discs\", radius = \"size\"", "surface.radius: found"),
+        ("kind = \"balls\"", "surface.kind: found the string \"balls\""),
+    ] {
+        let found = found(surface);
+        assert!(found.contains(expected), "{surface}: {found}");
+    }
+}
+
+#[test]
 fn values_of_the_wrong_type_length_or_range_are_errors() {
     for (from, to, path, expected) in [
         ("trust = 0.75", "trust = \"a\"", "objects[0].surface.trust", "a number from 0.5 to 1"),

@@ -97,6 +97,19 @@ fn every_built_key_is_read() {
         range: Some([-1.0, 2.5]),
     };
     assert_eq!(scene.objects[2].material.albedo, intensity);
+    let of = RadiusOf::Attribute("diameter".into());
+    let spheres = SurfaceKind::Spheres(ShapeRadius { of, scale: 0.5 });
+    assert_eq!(scene.objects[2].surface.kind, spheres);
+    let kind = |surface: &str| {
+        read(&format!("{SMALL}surface = {{ {surface} }}")).unwrap().objects.remove(0).surface.kind
+    };
+    let (of, scale) = (RadiusOf::Spacing, 1.0);
+    assert_eq!(kind("kind = \"discs\""), SurfaceKind::Discs(ShapeRadius { of, scale }));
+    let of = RadiusOf::Length(0.25);
+    assert_eq!(
+        kind("kind = \"discs\", radius = 0.25"),
+        SurfaceKind::Discs(ShapeRadius { of, scale })
+    );
     let grass = Albedo::Texture { file: image_file("maps/grass.png"), axis: Some(TextureAxis::Uv) };
     assert_eq!(scene.objects[3].material.albedo, grass);
     let mirror = MaterialKind::Mirror { reflectance: [0.9, 0.8, 0.7] };

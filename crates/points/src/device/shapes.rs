@@ -1,0 +1,100 @@
+//! The passes `shape_spheres` and `shape_discs`.
+
+use super::line;
+use super::work::Work;
+use crate::{ShapeKind, Shapes};
+use gpu::{Binding, Buffer, Device, GpuError, Kernel};
+use kernels::layout::{
+    FitOutcome, Point, Polynomial, SHAPE_NORMALS, SHAPE_OUTCOMES, SHAPE_POINTS, SHAPE_POLYNOMIALS,
+    SHAPE_RADII, ShapeParams,
+};
+use kernels::spirv;
+use std::sync::Arc;
+
+/// Shapes of one dispatch.
+const BATCH: u32 = 1 << 17;
+/// The buffers by slot are bound from multiples of so many, which begin where a part of a buffer may.
+const BOUND_FROM: u32 = 64;
+
+/// What the passes work on, by slot.
+pub(crate) struct ShapesIo<'a> {
+    pub points: &'a Buffer,
+    pub polynomials: &'a Buffer,
+    pub outcomes: &'a Buffer,
+}
+
+/// Writes the polynomials and outcomes of all shapes. Where discs have no normals, planes were fitted before.
+pub(crate) fn write_shapes(
+    device: &Arc<Device>,
+    rec: &mut Work,
+    io: &ShapesIo<'_>,
+    all: &[Shapes],
+) -> Result<(), GpuError> {
+    let storage = |at| (at, Binding::StorageBuffer);
+    let bindings =
+        [SHAPE_POINTS, SHAPE_RADII, SHAPE_POLYNOMIALS, SHAPE_OUTCOMES, SHAPE_NORMALS].map(storage);
+    let kernel = |name, module: &[u32], bindings: &[(u32, Binding)]| {
+        Kernel::new(device, name, module, bindings, size_of::<ShapeParams>())
+    };
+    let any = |kind| all.iter().any(|shapes| shapes.kind == kind && shapes.count > 0);
+    if any(ShapeKind::Sphere) {
+        let spheres = kernel("shape_spheres", &spirv::shape_spheres(), &bindings[..4])?;
+        for shapes in all.iter().filter(|shapes| shapes.kind == ShapeKind::Sphere) {
+            write_batches(device, rec, ("shape_spheres", &spheres), io, shapes)?;
+        }
+    }
+    if any(ShapeKind::Disc) {
+        let discs = kernel("shape_discs", &spirv::shape_discs(), &bindings)?;
+        for shapes in all.iter().filter(|shapes| shapes.kind == ShapeKind::Disc) {
+            write_batches(device, rec, ("shape_discs", &discs), io, shapes)?;
+        }
+    }
+    Ok(())
+}
+
+fn write_batches(
+    device: &Arc<Device>,
+    rec: &mut Work,
+    (name, kernel): (&'static str, &Kernel),
+    io: &ShapesIo<'_>,
+    shapes: &Shapes,
+) -> Result<(), GpuError> {
+    for first in (0..shapes.count).step_by(BATCH as usize) {
+        let count = BATCH.min(shapes.count - first);
+        let first_slot = shapes.first_slot + first;
+        let bound_from = first_slot - first_slot % BOUND_FROM;
+        let part = |stride: usize| {
+            let [from, end] = [bound_from, first_slot + count];
+            let [from, end] = [from, end].map(|slot| u64::from(slot) * stride as u64);
+            [from, end - from]
+        };
+        let own = first as usize..(first + count) as usize;
+        let radii = Buffer::from_slice(device, "radii", &shapes.radii[own.clone()])?;
+        let normals = match &shapes.normals {
+            Some(normals) => Some(Buffer::from_slice(device, "disc normals", &normals[own])?),
+            None => None,
+        };
+        let (points, polynomials) = (part(size_of::<Point>()), part(size_of::<Polynomial>()));
+        let outcomes = part(size_of::<FitOutcome>());
+        let params = ShapeParams {
+            first_slot,
+            count,
+            object: shapes.object,
+            bound_from,
+            has_normals: u32::from(normals.is_some()),
+        };
+        let mut pass = rec
+            .pass(name, kernel)
+            .buffer_part(SHAPE_POINTS, io.points, points[0], points[1])
+            .buffer(SHAPE_RADII, &radii)
+            .buffer_part(SHAPE_POLYNOMIALS, io.polynomials, polynomials[0], polynomials[1])
+            .buffer_part(SHAPE_OUTCOMES, io.outcomes, outcomes[0], outcomes[1]);
+        if shapes.kind == ShapeKind::Disc {
+            // Without normals, nothing is read of these.
+            pass = pass.buffer(SHAPE_NORMALS, normals.as_ref().unwrap_or(&radii));
+        }
+        pass.push(&params).dispatch(line(count));
+        rec.submit()?;
+    }
+    Ok(())
+}
