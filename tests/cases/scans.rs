@@ -7,19 +7,23 @@ use harness::{Bench, plan_of, said, set_of};
 use scans::{Room, Scan, Scanner};
 use std::path::{Path, PathBuf};
 
-/// Half as many points a metre as the scans that the limits were set for, a quarter of the points in all; noise is the same
-/// in spacings.
-const RESOLUTION: f64 = 0.5;
+/// Of a quarter of the pixels that the limits were set for.
 const SIZE: [usize; 2] = [160, 120];
 /// 0 is laid out by hand, the others are drawn by chance.
 const ROOMS: [u32; 3] = [0, 1, 2];
 const SEEDS: [u64; 3] = [1, 2, 3];
 
-/// A scan's picture, judged. Where `POINTILLIST_SCANS_TO` names a folder, points, scene and picture are written there.
+/// A picture of the part of a scan that it shows, judged: as dense as the whole scan, and with as many edges to its area.
+/// Where `POINTILLIST_SCANS_TO` names a folder, points, scene and picture are written there.
 fn judged(scanner: Scanner, room: u32, seed: u64) -> Verdict {
     let name = format!("{}-room{room}-seed{seed}", scanner.name());
-    let room = Room::new(room);
-    let scan = Scan::new(scanner, &room, seed, RESOLUTION);
+    let mut room = Room::new(room);
+    if scanner == Scanner::Depth {
+        // All that a depth camera sees is in the picture: of a narrower one, 190 000 points are left of 307 000.
+        room.view.fov = 30.0;
+    }
+    let aspect = SIZE[0] as f64 / SIZE[1] as f64;
+    let scan = Scan::new(scanner, &room, seed, 1.0).in_view(aspect);
     let positions = scan.positions();
     let scene = room.scene(&format!("{name}.ply"), SIZE, "");
     let wide = positions.iter().map(|p| p.map(f64::from)).collect();

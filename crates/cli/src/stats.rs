@@ -33,6 +33,8 @@ pub struct Row {
     pub plan_ms: f64,
     /// Fitting surfaces and building the grid.
     pub build_ms: Spread,
+    /// Planning and building over that of another row, where the suite asks for it.
+    pub prepared_over: Option<PreparedOver>,
     /// How many builds that is of. Where there are several, the first is not among them.
     pub builds: u32,
     /// The same on the CPU with a k-d tree, neighbours and fits alone; where `bench --cpu-preparation` asks for it.
@@ -108,6 +110,15 @@ pub struct Spread {
     pub min: f64,
     /// The longest.
     pub max: f64,
+}
+
+/// Times of two rows of one run.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct PreparedOver {
+    /// The other row.
+    pub name: String,
+    /// Medians of planning and of building together, over those of that row.
+    pub ratio: f64,
 }
 
 /// Rays by kind.
@@ -222,6 +233,7 @@ impl Row {
             plan_ms: milliseconds(measured.prepared[1]),
             gpu_ms: frame.gpu_ms().map(|ms| Spread { median: ms, min: ms, max: ms }),
             build_ms: Spread::of(&[built.duration]),
+            prepared_over: None,
             builds: 1,
             cpu_preparation_ms: None,
             build_kernels: built.kernels().iter().copied().collect(),
@@ -261,6 +273,14 @@ impl Row {
             hits: frame.hits,
             origin: plan.cloud.origin,
         }
+    }
+}
+
+impl PreparedOver {
+    /// A row over an earlier one.
+    pub fn new(row: &Row, earlier: &Row) -> Self {
+        let prepared = |row: &Row| row.plan_ms + row.build_ms.median;
+        Self { name: earlier.name.clone(), ratio: prepared(row) / prepared(earlier).max(1e-6) }
     }
 }
 

@@ -30,6 +30,16 @@ impl View {
         let y = (0.5 * height - (pixel / size[0]) as f64 - 0.5) * half;
         unit(add(add(forward, right, x), up, y))
     }
+
+    /// Whether a place lies within a picture of this width over height, grown to all sides by a share of it.
+    #[must_use]
+    pub fn frames(&self, place: V3, aspect: f64, margin: f64) -> bool {
+        let axes = frame(add(self.target, self.eye, -1.0));
+        let [right, up, ahead] = axes.map(|axis| dot(add(place, self.eye, -1.0), axis));
+        let (sin, cos) = sin_cos(0.5 * self.fov.to_radians());
+        let high = (1.0 + margin) * sin / cos * ahead;
+        ahead > 0.0 && up.abs() < high && right.abs() < aspect * high
+    }
 }
 
 /// A rectangle: its middle, two directions of unit length across each other, and half its sides along them.

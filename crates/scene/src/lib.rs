@@ -39,5 +39,5 @@ pub use scene::{
     TextureAxis, Transfer, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
 };
 pub use schema::{json_schema, suite_json_schema};
-pub use suite::{Shape, Suite, SuiteRow};
+pub use suite::{Shape, SimulatedScan, Suite, SuiteRow};
 pub use transform::Transform;

@@ -12,6 +12,9 @@ use std::path::{Path, PathBuf};
 /// Names of [`Shape`]s, in their order.
 pub(crate) const SHAPES: [&str; 3] = ["sphere", "torus", "hills"];
 
+/// Names of [`SimulatedScan`]s, in their order.
+pub(crate) const SCANS: [&str; 5] = ["depth", "tls1", "tls3", "tls10", "photo"];
+
 /// A file of benchmarks, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suite {
@@ -36,6 +39,10 @@ pub struct SuiteRow {
     pub generate: Option<Shape>,
     /// How many: a row for each. Empty where none are made.
     pub point_counts: Vec<u32>,
+    /// A scan to be made instead of the points of the first object.
+    pub scan: Option<SimulatedScan>,
+    /// An earlier row, over whose planning and building that of this one is stated.
+    pub over: Option<String>,
     /// Milliseconds a frame that the paper states.
     pub paper_ms: Option<f64>,
     /// What to do where a model is missing.
@@ -51,6 +58,21 @@ pub enum Shape {
     Torus,
     /// Over a square of side 1 in the plane y = 0, level where they meet the origin.
     Hills,
+}
+
+/// A simulated scan of a room.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SimulatedScan {
+    /// By a depth camera.
+    Depth,
+    /// By a laser scanner with noise of 1 ‰ of the distance.
+    Tls1,
+    /// The same with 3 ‰.
+    Tls3,
+    /// The same with 10 ‰.
+    Tls10,
+    /// By photogrammetry.
+    Photo,
 }
 
 impl Suite {
@@ -105,6 +127,14 @@ fn row_of(row: &Reader<'_>, folder: &Path) -> SuiteRow {
             _ => Shape::Hills,
         }),
         point_counts: list(row, "point_counts", count),
+        scan: text("scan").map(|name| match name.as_str() {
+            "depth" => SimulatedScan::Depth,
+            "tls1" => SimulatedScan::Tls1,
+            "tls3" => SimulatedScan::Tls3,
+            "tls10" => SimulatedScan::Tls10,
+            _ => SimulatedScan::Photo,
+        }),
+        over: text("over"),
         paper_ms: row.written("paper_ms").map(|_| row.number("paper_ms")),
         if_missing: text("if_missing"),
     }
@@ -143,6 +173,11 @@ name = 'tori'
 scene = '../torus.toml'
 generate = 'torus'
 point_counts = [1000, 2000]
+[[rows]]
+name = 'scan'
+scene = 'room.toml'
+scan = 'tls10'
+over = 'ball'
 ";
 
     fn error(text: &str) -> String {
@@ -159,6 +194,8 @@ point_counts = [1000, 2000]
             cells_per_pass: vec![1, 0],
             generate: None,
             point_counts: Vec::new(),
+            scan: None,
+            over: None,
             paper_ms: Some(36.0),
             if_missing: Some("fetch it".into()),
         };
@@ -169,15 +206,32 @@ point_counts = [1000, 2000]
             cells_per_pass: Vec::new(),
             generate: Some(Shape::Torus),
             point_counts: vec![1000, 2000],
+            scan: None,
+            over: None,
             paper_ms: None,
             if_missing: None,
         };
-        assert_eq!(suite, Suite { about: "both kinds".into(), rows: vec![ball, tori] });
+        let scan = SuiteRow {
+            name: "scan".into(),
+            scene: "a/room.toml".into(),
+            generate: None,
+            point_counts: Vec::new(),
+            scan: Some(SimulatedScan::Tls10),
+            over: Some("ball".into()),
+            ..tori.clone()
+        };
+        assert_eq!(suite, Suite { about: "both kinds".into(), rows: vec![ball, tori, scan] });
         assert_eq!(
             SHAPES,
             [Shape::Sphere, Shape::Torus, Shape::Hills]
                 .map(|shape| format!("{shape:?}").to_lowercase())
         );
+        for name in SCANS {
+            let text = TEXT.replace("'tls10'", &format!("'{name}'"));
+            let suite = Suite::from_toml(&text, "a/s.toml".as_ref()).unwrap();
+            let scan = suite.rows.last().and_then(|row| row.scan).unwrap();
+            assert_eq!(format!("{scan:?}").to_lowercase(), name);
+        }
     }
 
     #[test]
@@ -194,6 +248,13 @@ point_counts = [1000, 2000]
             ("point_counts = [1000, 2000]", "", &["rows[1].point_counts", "missing"]),
             ("paper_ms = 36", "paper_ms = 0", &["s.toml:7:12", "raise it"]),
             ("name = 'tori'", "name = 'ball'", &["s.toml:2:1", "\"ball\" twice"]),
+            ("scan = 'tls10'", "scan = 'tls2'", &["rows[2].scan", "did you mean"]),
+            (
+                "scan = 'tls10'",
+                "scan = 'photo'\ngenerate = 'torus'\npoint_counts = [100]",
+                &["rows[2].scan", "drop one"],
+            ),
+            ("over = 'ball'", "over = 'scan'", &["rows", "\"scan\"", "an earlier row"]),
             ("'lights=[]'", "7", &["rows[0].set[0]", "PATH=VALUE"]),
         ] {
             assert!(TEXT.contains(from), "{from}");

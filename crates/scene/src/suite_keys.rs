@@ -3,7 +3,7 @@
 use crate::keys::Absent::{Required, Words};
 use crate::keys::{Fault, Kind, Table, count, key, numbers};
 use crate::read::Reader;
-use crate::suite::SHAPES;
+use crate::suite::{SCANS, SHAPES};
 
 /// Rows of one suite, and values of one list.
 const MOST: usize = 1000;
@@ -12,7 +12,7 @@ const MOST: usize = 1000;
 pub(crate) static SUITE: Table = Table {
     header: "the suite",
     doc: "",
-    whole: Some(names_differ),
+    whole: Some(names_differ_and_are_known),
     keys: &[
         key(
             "about",
@@ -74,6 +74,19 @@ pub(crate) static ROWS: Table = Table {
             "How many points to generate: a row for each number.",
         ),
         key(
+            "scan",
+            Kind::Choice(&SCANS),
+            Words("the scene's own points", "\"tls3\""),
+            "A simulated scan of the corner of a room of 4 × 4 × 3 m to be made instead of the first object's points: by a \
+             depth camera, by a laser scanner with noise of 1, 3 or 10 ‰ of the distance, or by photogrammetry.",
+        ),
+        key(
+            "over",
+            Kind::Text("the name of an earlier row"),
+            Words("none", "\"tls3, 16 neighbours\""),
+            "An earlier row: the time to plan and build is stated over that of it.",
+        ),
+        key(
             "paper_ms",
             Kind::Number(numbers(1e-6, 1e9, "ms")),
             Words("none", "36"),
@@ -88,15 +101,27 @@ pub(crate) static ROWS: Table = Table {
     ],
 };
 
-/// Rows are told apart by their names.
-fn names_differ(suite: &Reader<'_>) -> Result<(), Fault> {
+/// Rows are told apart by their names, and ask for earlier ones by them.
+fn names_differ_and_are_known(suite: &Reader<'_>) -> Result<(), Fault> {
     let rows = suite.tables("rows", &ROWS);
     let names: Vec<String> = rows.iter().map(|row| row.text("name")).collect();
     let twice = (1..names.len()).find(|&at| names[..at].contains(&names[at]));
-    match twice {
-        Some(at) => Err((
+    if let Some(at) = twice {
+        return Err((
             "rows",
             format!("found the name \"{}\" twice, expected one a row; rename one", names[at]),
+        ));
+    }
+    let over = |at: &usize| rows[*at].written("over").map(|_| rows[*at].text("over"));
+    let is_known = |at: &usize| over(at).is_none_or(|name| names[..*at].contains(&name));
+    match (0..names.len()).find(|at| !is_known(at)) {
+        Some(at) => Err((
+            "rows",
+            format!(
+                "row \"{}\" is over \"{}\", expected the name of an earlier row; move or rename one",
+                names[at],
+                rows[at].text("over")
+            ),
         )),
         None => Ok(()),
     }
@@ -106,6 +131,10 @@ fn points_are_generated_with_their_counts(row: &Reader<'_>) -> Result<(), Fault>
     let missing = |name: &'static str, owner: &str, example: &str| {
         Err((name, format!("missing, expected beside {owner}; add e.g. {name} = {example}")))
     };
+    if row.written("generate").is_some() && row.written("scan").is_some() {
+        let both = "found beside generate, expected one of the two; drop one";
+        return Err(("scan", both.to_owned()));
+    }
     match (row.written("generate").is_some(), row.written("point_counts").is_some()) {
         (true, false) => missing("point_counts", "generate", "[10000, 100000]"),
         (false, true) => missing("generate", "point_counts", "\"torus\""),

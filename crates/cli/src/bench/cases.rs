@@ -1,11 +1,12 @@
 //! The list of what is timed, each scene of it checked.
 
 use crate::args::{BenchArgs, Overrides};
+use crate::bench::generated::Made;
 use crate::bench::report::Skipped;
 use crate::bench::suites::{Asked, Suites};
 use crate::errors::Failure;
 use crate::input::{Input, SceneValues};
-use scene::{Scene, Shape, SuiteRow};
+use scene::{Scene, SuiteRow};
 use std::path::PathBuf;
 
 /// One row to be.
@@ -17,7 +18,9 @@ pub struct Case {
     /// What is timed, with its own points.
     pub input: Input,
     /// Points to be made instead of the first object's.
-    pub generated: Option<(Shape, u32)>,
+    pub made: Option<Made>,
+    /// The row of the same suite over which planning and building are stated.
+    pub over: Option<String>,
     /// Milliseconds a frame that the paper states.
     pub paper_ms: Option<f64>,
 }
@@ -63,7 +66,8 @@ impl Cases {
         let values = SceneValues::new(overrides);
         let input = Input::load(&path, &values, None)?;
         let name = input.name();
-        self.cases.push(Case { name, suite: None, input, generated: None, paper_ms: None });
+        let (suite, made, over, paper_ms) = (None, None, None, None);
+        self.cases.push(Case { name, suite, input, made, over, paper_ms });
         Ok(())
     }
 
@@ -113,7 +117,13 @@ impl Cases {
                     name,
                     suite: Some(suite.to_owned()),
                     input,
-                    generated: row.generate.zip(count),
+                    made: match row.scan {
+                        Some(scan) => Some(Made::Scan(scan)),
+                        None => {
+                            row.generate.zip(count).map(|(shape, count)| Made::Even(shape, count))
+                        }
+                    },
+                    over: row.over.clone(),
                     paper_ms: row.paper_ms,
                 });
             }

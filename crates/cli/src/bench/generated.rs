@@ -1,4 +1,5 @@
-//! Even points on a surface, as many as asked for, in a temporary file.
+//! Points that are made for a row, in a temporary file: a simulated scan, or even points on a surface, as many as asked
+//! for.
 //!
 //! Point `i` of `n` lies at the golden ratio's multiple around, and at the share `(i + ½) / n` of the
 //! area across: a lattice without clusters or gaps, for any `n`, and the same on every machine.
@@ -6,7 +7,8 @@
 use crate::errors::{Exit, Failure};
 use crate::interrupt;
 use points::Watch;
-use scene::Shape;
+use scans::{Room, Scan, Scanner};
+use scene::{Shape, SimulatedScan};
 use std::f64::consts::TAU;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -21,24 +23,82 @@ const STEPS: u32 = 8;
 /// Points between two looks at the clock.
 const BLOCK: u32 = 1 << 16;
 
-/// Writes `count` points as a binary PLY file.
-pub fn write(path: &Path, shape: Shape, count: u32, watch: &dyn Watch) -> Result<(), Failure> {
-    watch.stage("generating points", u64::from(count));
-    let written = write_points(path, shape, count, watch);
+/// What is made.
+#[derive(Debug, Clone, Copy)]
+pub enum Made {
+    /// So many even points.
+    Even(Shape, u32),
+    /// A scan of the room numbered 0.
+    Scan(SimulatedScan),
+}
+
+impl Made {
+    /// A file's name.
+    pub fn file_name(self) -> String {
+        match self {
+            Self::Even(shape, count) => format!("{shape:?}-{count}.ply").to_lowercase(),
+            Self::Scan(scan) => format!("{scan:?}.ply").to_lowercase(),
+        }
+    }
+
+    /// About how many points, at most.
+    pub fn count(self) -> u32 {
+        match self {
+            Self::Even(_, count) => count,
+            Self::Scan(_) => MOST_SCANNED,
+        }
+    }
+}
+
+/// Points of the largest scan: a depth image of 640 × 480.
+const MOST_SCANNED: u32 = 640 * 480;
+/// Of the noise of scans.
+const SEED: u64 = 1;
+
+/// Writes points as a binary PLY file.
+pub fn write(path: &Path, made: Made, watch: &dyn Watch) -> Result<(), Failure> {
+    let written = match made {
+        Made::Even(shape, count) => {
+            watch.stage("generating points", u64::from(count));
+            let point = |index| point(shape, index, count).map(|coordinate| coordinate as f32);
+            write_points(path, count, point, watch)
+        }
+        Made::Scan(scan) => {
+            watch.stage("scanning a room", u64::from(MOST_SCANNED));
+            let points = Scan::new(scanner(scan), &Room::new(0), SEED, 1.0).positions();
+            write_points(path, points.len() as u32, |index| points[index as usize], watch)
+        }
+    };
     written.map_err(|error| match error.kind() {
         io::ErrorKind::Interrupted => Failure::interrupted(),
         _ => Failure {
             exit: Exit::Exhausted,
             lines: vec![format!(
-                "{}: cannot hold {count} generated points ({error}); make room, or set TMPDIR to a \
+                "{}: cannot hold {} generated points ({error}); make room, or set TMPDIR to a \
                  folder that has it",
-                path.display()
+                path.display(),
+                made.count()
             )],
         },
     })
 }
 
-fn write_points(path: &Path, shape: Shape, count: u32, watch: &dyn Watch) -> io::Result<()> {
+fn scanner(scan: SimulatedScan) -> Scanner {
+    match scan {
+        SimulatedScan::Depth => Scanner::Depth,
+        SimulatedScan::Tls1 => Scanner::Laser1,
+        SimulatedScan::Tls3 => Scanner::Laser3,
+        SimulatedScan::Tls10 => Scanner::Laser10,
+        SimulatedScan::Photo => Scanner::Photo,
+    }
+}
+
+fn write_points(
+    path: &Path,
+    count: u32,
+    point: impl Fn(u32) -> [f32; 3],
+    watch: &dyn Watch,
+) -> io::Result<()> {
     let mut file = BufWriter::new(File::create(path)?);
     write!(
         file,
@@ -52,8 +112,8 @@ fn write_points(path: &Path, shape: Shape, count: u32, watch: &dyn Watch) -> io:
             }
             watch.done(u64::from(index));
         }
-        for coordinate in point(shape, index, count) {
-            file.write_all(&(coordinate as f32).to_le_bytes())?;
+        for coordinate in point(index) {
+            file.write_all(&coordinate.to_le_bytes())?;
         }
     }
     file.flush()
@@ -143,10 +203,28 @@ mod tests {
     fn the_file_is_read_back_with_every_point() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("torus.ply");
-        write(&path, Shape::Torus, 1234, &Unwatched).unwrap();
+        write(&path, Made::Even(Shape::Torus, 1234), &Unwatched).unwrap();
         let set = points::read(&path, &mut |_, _| {}).unwrap();
         assert_eq!((set.len(), set.non_finite), (1234, 0));
         let last = point(Shape::Torus, 1233, 1234).map(|x| f64::from(x as f32));
         assert_eq!(set.positions.last(), Some(&last));
+    }
+
+    /// The scene that shows them has the room's camera and light.
+    #[test]
+    fn scans_are_of_the_room_whose_camera_their_scene_has() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("photo.ply");
+        let made = Made::Scan(SimulatedScan::Photo);
+        write(&path, made, &Unwatched).unwrap();
+        let set = points::read(&path, &mut |_, _| {}).unwrap();
+        assert!(set.len() > 130_000 && set.len() < made.count() as usize, "{}", set.len());
+        let file =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/bench/scenes/room.toml");
+        let shown = scene::Scene::load(&file, &[]).unwrap();
+        let text = Room::new(0).scene("a.ply", [320, 240], "");
+        let room = scene::Scene::from_toml(&text, "a.toml".as_ref(), &[]).unwrap();
+        assert_eq!(shown.camera, room.camera);
+        assert_eq!(shown.lights, room.lights);
     }
 }

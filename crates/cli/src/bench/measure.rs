@@ -4,7 +4,7 @@
 //! frames are timed one after the other. Builds are repeated as often, but not for long.
 
 use crate::bench::cases::Case;
-use crate::bench::generated;
+use crate::bench::generated::{self, Made};
 use crate::engine::{Built, Engine};
 use crate::errors::Failure;
 use crate::input::Input;
@@ -12,7 +12,9 @@ use crate::progress::Progress;
 use crate::stats::{Measured, RaysPerSecond, Row, Spread, milliseconds, pixel_hash};
 use crate::{interrupt, memory};
 use plan::Plan;
+use points::PointSet;
 use render::Traversal;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Builds are repeated within this time, so that those of a million points are timed once.
@@ -27,17 +29,17 @@ pub fn measure(
     progress: &Progress,
 ) -> Result<Row, Failure> {
     // Held, so that temporary files are removed before an interruption ends the process.
-    interrupt::held(|| match case.generated {
+    interrupt::held(|| match case.made {
         None => timed(case, &case.input, engine, [runs, u32::from(on_cpu)], progress),
-        Some((shape, count)) => {
-            memory::require_points(u64::from(count))?;
+        Some(made) => {
+            memory::require_points(u64::from(made.count()))?;
             let folder = tempfile::Builder::new()
                 .prefix("pointillist-bench-")
                 .tempdir()
                 .map_err(|error| Failure::exhausted(format!("temporary folder: {error}")))?;
-            let name = format!("{shape:?}-{count}.ply").to_lowercase();
+            let name = made.file_name();
             let path = folder.path().join(&name);
-            generated::write(&path, shape, count, progress)?;
+            generated::write(&path, made, progress)?;
             let mut input = case.input.clone();
             if let Some(object) = input.scene.objects.first_mut() {
                 object.points = path;
@@ -62,10 +64,8 @@ fn timed(
     go_on()?;
     let dropped = sets.iter().map(|set| set.dropped()).sum();
     let filtered_out = sets.iter().map(|set| set.filtered_out).sum();
-    let plan = input.plan(&sets, None, progress)?;
-    let planned = started.elapsed() - read;
+    let (plan, planned) = planned(case, input, &sets, runs, progress)?;
     drop(sets);
-    go_on()?;
     let (mut built, builds, prepared) = build(engine, &plan, [runs, on_cpu], progress)?;
     let warm_up = built.built.frame(&plan, progress)?;
     let pixels = pixel_hash(&warm_up.film);
@@ -111,6 +111,30 @@ fn timed(
         rays_per_second: RaysPerSecond::new(&row.rays, row.trace_ms.median, &times.traversal()),
         ..row
     })
+}
+
+/// Plans; of scans, whose planning is what is to be looked at, as often as frames while that takes no longer than
+/// [`BUILDING`]. Returns the last plan and the median time.
+fn planned(
+    case: &Case,
+    input: &Input,
+    sets: &[Arc<PointSet>],
+    runs: u32,
+    progress: &Progress,
+) -> Result<(Plan, Duration), Failure> {
+    let started = Instant::now();
+    let mut times = Vec::new();
+    loop {
+        let begun = Instant::now();
+        let plan = input.plan(sets, None, progress)?;
+        times.push(begun.elapsed());
+        go_on()?;
+        let is_scan = matches!(case.made, Some(Made::Scan(_)));
+        if !is_scan || times.len() >= runs as usize || started.elapsed() > BUILDING {
+            times.sort_unstable();
+            return Ok((plan, times[times.len() / 2]));
+        }
+    }
 }
 
 /// Of each frame.

@@ -25,6 +25,7 @@ macro_rules! embedded {
 const EMBEDDED: &[(&str, &[u8])] = embedded![
     "bench/paper.toml",
     "bench/scaling.toml",
+    "bench/scans.toml",
     "bench/cells-per-pass.toml",
     "bench/landscape.toml",
     "bench/ruler.toml",
@@ -37,6 +38,7 @@ const EMBEDDED: &[(&str, &[u8])] = embedded![
     "bench/scenes/cloud.toml",
     "bench/scenes/horse.toml",
     "bench/scenes/horse-filled.toml",
+    "bench/scenes/room.toml",
     "bench/scenes/torus.toml",
     "images/sky.hdr",
     "points/floor.ply",
@@ -238,14 +240,15 @@ mod tests {
     #[test]
     fn known_suites_say_what_they_measure() {
         let suites = known();
-        for name in ["cells-per-pass", "landscape", "paper", "ruler", "scaling", "smoke"] {
+        for name in ["cells-per-pass", "landscape", "paper", "ruler", "scaling", "scans", "smoke"] {
             let about = suites.iter().find(|suite| suite.0 == name).map(|suite| suite.1.as_str());
             assert!(about.is_some_and(|about| !about.is_empty()), "{name}: {suites:?}");
         }
         let failure = unknown("papr");
         assert!(failure.lines[0].contains("did you mean 'paper'?"), "{failure:?}");
         assert!(
-            failure.lines[0].contains("cells-per-pass, landscape, paper, ruler, scaling, smoke"),
+            failure.lines[0]
+                .contains("cells-per-pass, landscape, paper, ruler, scaling, scans, smoke"),
             "{failure:?}"
         );
     }

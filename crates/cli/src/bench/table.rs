@@ -24,6 +24,9 @@ const COLUMNS: &[Column] = &[
     ("paper frames/s", |row| row.paper_frames_per_second.map(short)),
     ("wall ms", |row| Some(short(row.wall_ms.median))),
     ("build ms", |row| Some(short(row.build_ms.median))),
+    ("plan + build over", |row| {
+        row.prepared_over.as_ref().map(|over| format!("{} × {}", short(over.ratio), over.name))
+    }),
     ("Mrays/s", |row| Some(short(row.rays_per_second.all / 1e6))),
     ("tests/ray", |row| Some(short(row.tests_per_ray))),
     ("bytes/point", |row| Some(short(row.bytes_per_point))),

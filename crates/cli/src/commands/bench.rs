@@ -10,6 +10,7 @@ use crate::bench::{plot, table};
 use crate::engine::{Engine, with_engine};
 use crate::errors::{Exit, Failure};
 use crate::progress::Progress;
+use crate::stats::{PreparedOver, Row};
 use crate::{console, files};
 use std::fmt::Write;
 use std::path::Path;
@@ -68,7 +69,13 @@ fn time(
     progress: &Progress,
 ) -> Result<(), Failure> {
     match (measure(case, engine, report.runs, on_cpu, progress), &case.suite) {
-        (Ok(row), _) => report.rows.push(row),
+        (Ok(row), _) => {
+            let is_earlier =
+                |other: &&Row| other.suite == case.suite && Some(&other.name) == case.over.as_ref();
+            let earlier = report.rows.iter().find(is_earlier);
+            let prepared_over = earlier.map(|earlier| PreparedOver::new(&row, earlier));
+            report.rows.push(Row { prepared_over, ..row });
+        }
         (Err(Failure { exit: Exit::Exhausted, lines }), Some(suite)) => {
             let reason = format!("does not fit: {}", lines.join("; "));
             let skipped = Skipped { name: case.name.clone(), suite: suite.clone(), reason };
