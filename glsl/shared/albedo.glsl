@@ -42,13 +42,17 @@ vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
     vec3 sum = 1e-6 * own;
     float weights = 1e-6;
     uvec2 slots = uvec2(object.first_slot, object.slot_count);
-    Around around = points_around(x, slots);
-    uvec2 range = around.range;
+    Around around = Around(uvec2(0u), false);
     bool is_shape = scene_has(SCENE_SHAPES) && is_shape_of(object, slot);
-    bool asks = object.first_color != NONE && !is_shape;
-    uint end = asks && !around.several ? min(range.y, range.x + MOST_ASKED) : range.x;
+    if (scene_has(SCENE_SHAPES)) { // for shapes alone nothing is listed
+        if (!is_shape) around = points_around(x, slots);
+    } else {
+        around = points_around(x, slots);
+    }
+    uvec2 range = around.range;
+    uint end = object.first_color != NONE && !around.several ? min(range.y, range.x + MOST_ASKED) : range.x;
     if (scene_has(SCENE_LEVELS)) {
-        if (around.several && !is_shape) {
+        if (around.several) {
             Merge merge = merge_around(x, slots);
             uint near = next_around(merge, x, slots);
             while (near != NONE) {

@@ -18,7 +18,9 @@ const LIT: &str = "[[lights]]\nkind = \"directional\"\ndirection = [-0.4, -1.0, 
 /// kernels that ran.
 fn unforeseen(text: &str, sets: &[PointSet]) -> (usize, HashSet<&'static str>) {
     let plan = plan_of(text, sets);
-    let neighbors = if plan.cloud.points.is_empty() { 0 } else { plan.fits[0].neighbors };
+    let planes = plan.shapes.iter().filter_map(plan::Shapes::plane_fit);
+    let mut fitted = plan.fits.iter().copied().chain(planes).filter(|fit| fit.point_count > 0);
+    let neighbors = fitted.next().map_or(0, |fit| fit.neighbors);
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     Bench::open().with_device(|device| {
         // Others are kept from test to test (harness), with what those made.
@@ -45,7 +47,8 @@ fn unforeseen(text: &str, sets: &[PointSet]) -> (usize, HashSet<&'static str>) {
     })
 }
 
-/// Diffuse points by discs and by the tree, without lists, glass, several samples: nothing is left to wait for.
+/// Diffuse points by discs and by the tree, without lists, glass, several samples, spheres and discs: nothing is left
+/// to wait for.
 #[test]
 fn what_surfaces_take_is_foreseen() {
     let ball = |at| set_of(moved(&fibonacci_sphere(3000), at));
@@ -63,6 +66,14 @@ fn what_surfaces_take_is_foreseen() {
         (format!("[image]\nsize = [200, 160]\n{bare}"), "tree_nodes"),
         (format!("[image]\nsize = [256, 192]\n{glass}"), "scatter"),
         (format!("[image]\nsize = [64, 64]\nsamples = 4\n{glass}"), "camera_rays"),
+        (
+            format!("[image]\nsize = [256, 192]\n{}", objects("surface.kind = \"spheres\"")),
+            "shape_spheres",
+        ),
+        (
+            format!("[image]\nsize = [256, 192]\n{}", objects("surface.kind = \"discs\"")),
+            "shape_discs",
+        ),
     ] {
         let (count, kernels) = unforeseen(&text, &sets);
         assert!(kernels.contains(ran), "{text}: {kernels:?}");

@@ -104,7 +104,14 @@ fn radii_are_numbers_in_the_scene_or_attributes_in_the_file() {
     // Of points at 0, 1, 2 and 4, distances to the nearest other are 1, 1, 1 and 2.
     let line = [0.0, 1.0, 2.0, 4.0].map(|x| [x, 0.0, 0.0]).to_vec();
     let text = format!("{}transform = {{ scale = 2.0 }}", object("kind = \"spheres\"", ""));
-    assert_eq!(plan_of(&text, &[set_of(line)]).shapes[0].radii, [1.0; 4]);
+    assert_eq!(plan_of(&text, &[set_of(line.clone())]).shapes[0].radii, [1.0; 4]);
+    // To the three others: 7/3, 5/3, 5/3 and 3 in the mean.
+    let text = text.replace("\"spheres\"", "\"discs\", radius = \"local\"");
+    let mut radii = plan_of(&text, &[set_of(line)]).shapes[0].radii.clone();
+    radii.sort_by(f32::total_cmp);
+    for (radius, expected) in radii.iter().zip([5.0 / 3.0, 5.0 / 3.0, 7.0 / 3.0, 3.0]) {
+        assert!((radius - expected).abs() < 1e-6, "{radii:?}");
+    }
 }
 
 fn sky() -> Arc<Image> {
@@ -384,6 +391,17 @@ fn every_sphere_has_the_colour_of_its_own_point() {
         }
     }
     assert!(lit > 2_000, "{lit}");
+}
+
+/// More than one dispatch writes, of an object that begins and ends within one of its parts.
+#[test]
+fn many_spheres_are_the_same_to_the_bit() {
+    let spheres = "kind = \"spheres\", radius = 0.004";
+    let text = format!("{}{LIGHT}{}{}", VIEW.text(), object(spheres, ""), object(spheres, ""));
+    let set = set_of(cloud(140_001, 4));
+    let rendered = checked("many", &plan_of(&text, &[set_of(cloud(77, 8)), set]));
+    assert_eq!(rendered.polynomials.len(), 140_078);
+    assert!(rendered.polynomials.iter().all(|p| p.gradient_offset[3] == 0.002));
 }
 
 /// Steps of 2^-10 are the same at 4.1e6: so is the picture, to the bit.

@@ -6,7 +6,7 @@ use crate::interrupt;
 use gpu::{Device, Kernel};
 use plan::Plan;
 use render::Renderer;
-use scene::{Boundary, Object, Scene};
+use scene::{Boundary, Object, Scene, SurfaceKind};
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{Builder, JoinHandle, available_parallelism};
@@ -57,7 +57,13 @@ impl Ahead {
             object.volume.as_ref().is_none_or(|volume| volume.boundary != Boundary::None)
         };
         let objects = scene.objects.iter().filter(carries_surface);
-        let mut neighbors: Vec<_> = objects.map(|object| object.surface.neighbors).collect();
+        let fitted = |object: &Object| match object.surface.kind {
+            SurfaceKind::Points => Some(object.surface.neighbors),
+            // Unless the file has normals.
+            SurfaceKind::Discs(_) => Some(points::Shapes::NEIGHBORS),
+            SurfaceKind::Spheres(_) => None,
+        };
+        let mut neighbors: Vec<_> = objects.filter_map(fitted).collect();
         neighbors.sort_unstable();
         neighbors.dedup();
         for count in neighbors {

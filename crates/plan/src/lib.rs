@@ -196,7 +196,7 @@ impl Plan {
         let coarse = precision::warnings(scene, sets, &metric, cloud.origin);
         let mut missing = Vec::new();
         let volumes = volumes::plan_volumes(scene, &bulk, &cloud, (watch, &mut missing))?;
-        let shapes = shapes::whole_objects(scene, &surface_sets, &cloud, &mut missing)?;
+        let shapes = shapes::whole_objects(scene, &surface_sets, &cloud, (watch, &mut missing))?;
         let surfaces: Vec<SlotRange> = (0..scene.objects.len())
             .map(|index| shapes::surface_slots(&cloud, &shapes, index))
             .collect();

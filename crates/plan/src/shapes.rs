@@ -4,10 +4,10 @@ use crate::PlanError;
 use crate::bulk::World;
 use crate::colors::attribute_values;
 use crate::missing::{Lacking, Missing};
-use crate::neighborhoods::length;
+use crate::neighborhoods::{at_most, in_batches, length, vectors};
 use kernels::layout::Point;
 use points::neighbors::median_spacing;
-use points::{Cloud, FARTHEST, PointSet, SlotRange, bounds_of};
+use points::{Cloud, FARTHEST, NeighborSearch, PointSet, SlotRange, Watch, bounds_of};
 pub use points::{ShapeKind, Shapes};
 use rayon::prelude::*;
 use scene::{MaterialKind, Object, RadiusOf, Scatter, Scene, ShapeRadius, SurfaceKind};
@@ -19,8 +19,9 @@ const LARGE: f64 = 0.01;
 const MOST_LARGE: usize = 1 << 16;
 /// Of the radius: places so far out, in 26 directions, have the whole sphere in their hull, and perspective's outline.
 const FRAMED: f64 = 1.1;
-/// Of `auto`, over the median distance between nearest points.
+/// Of `auto`, over the median distance between nearest points; of `local`, over the mean distance of so many others.
 const SHARE: f64 = 0.5;
+const LOCAL: usize = 4;
 /// Normals of a file that are shorter say nothing.
 const SHORTEST: f32 = 1e-6;
 
@@ -85,7 +86,7 @@ pub(crate) fn whole_objects(
     scene: &Scene,
     sets: &[Arc<PointSet>],
     cloud: &Cloud,
-    missing: &mut Vec<Missing>,
+    (watch, missing): (&dyn Watch, &mut Vec<Missing>),
 ) -> Result<Vec<Shapes>, PlanError> {
     let mut all = Vec::new();
     for (index, (object, set)) in scene.objects.iter().zip(sets).enumerate() {
@@ -94,18 +95,29 @@ pub(crate) fn whole_objects(
             SurfaceKind::Spheres(radius) => (ShapeKind::Sphere, radius),
             SurfaceKind::Discs(radius) => (ShapeKind::Disc, radius),
         };
-        let SlotRange { first_slot, count } = cloud.objects[index];
+        let slots = cloud.objects[index];
+        let SlotRange { first_slot, count } = slots;
         if count == 0 {
             continue;
         }
-        let radii = radii(object, set, radius, |place| cloud.counts(index, place), missing)?;
+        let radii = match radius.of {
+            RadiusOf::LocalSpacing => {
+                let spacings = local_spacings(&cloud.points[slots.range()], watch)?;
+                let of = |spacing: f64| (SHARE * spacing * radius.scale).min(FARTHEST) as f32;
+                spacings.into_iter().map(of).collect()
+            }
+            _ => {
+                let counts = |place| cloud.counts(index, place);
+                cloud.by_slot(index, &radii(object, set, radius, counts, missing)?)
+            }
+        };
         let normals = set.normals.as_ref().filter(|_| kind == ShapeKind::Disc);
         all.push(Shapes {
             object: index as u32,
             first_slot,
             count,
             kind,
-            radii: cloud.by_slot(index, &radii),
+            radii,
             normals: normals.map(|normals| cloud.by_slot(index, &turned(object, normals))),
         });
     }
@@ -125,7 +137,7 @@ fn radii(
     let name = match &radius.of {
         RadiusOf::Length(length) => return Ok(one(*length)),
         // One place has no spacing, and is not drawn.
-        RadiusOf::Spacing => {
+        RadiusOf::Spacing | RadiusOf::LocalSpacing => {
             return Ok(one(
                 median_spacing(&set.positions).map_or(0.0, |spacing| SHARE * spacing * scale)
             ));
@@ -155,6 +167,24 @@ fn radii(
         .into_iter()
         .map(|length| if is_radius(&length) { length as f32 } else { 0.0 })
         .collect())
+}
+
+/// The mean distance from each of an object's points to its four nearest others among them, or to as many as there are.
+fn local_spacings(points: &[Point], watch: &dyn Watch) -> Result<Vec<f64>, PlanError> {
+    watch.stage("measuring distances of points", points.len() as u64);
+    let k = at_most(LOCAL, points.len());
+    let search = NeighborSearch::new(points, 0);
+    let mut spacings = Vec::with_capacity(points.len());
+    in_batches(points.len(), watch, |batch| {
+        let lists = search.nearest(batch.clone(), k);
+        let mean = |(list, slot): (&[u32], usize)| {
+            let (sum, others) = vectors(points, slot, list)
+                .fold((0.0, 0.0f64), |(sum, others), v| (sum + length(v), others + 1.0));
+            sum / others.max(1.0)
+        };
+        spacings.par_extend(lists.par_chunks(k).zip(batch).map(mean));
+    })?;
+    Ok(spacings)
 }
 
 /// Normals of a file in the world, of unit length; zero where one is no direction.

@@ -39,7 +39,7 @@ impl Shapes {
     /// Radii under this are none: their reciprocals would leave f32.
     pub const SMALLEST: f32 = 1e-15;
     /// Nearest others that a disc's plane goes through.
-    const NEIGHBORS: u32 = 16;
+    pub const NEIGHBORS: u32 = 16;
 
     /// The slots.
     #[must_use]

@@ -24,7 +24,7 @@ use crate::volumes::VolumeBuffers;
 use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder};
 use kernels::layout::{
-    FilmPixel, Hit, Path, Polynomial, SCENE_BLENDS, SCENE_LEVELS, SCENE_SKIPS, SCENE_VALUES,
+    FilmPixel, Hit, NONE, ObjectInfo, Path, Polynomial, SCENE_BLENDS, SCENE_LEVELS, SCENE_SKIPS,
     WAVE_SHARES_PATH, WaveParams,
 };
 use plan::{MAX_DISC_PAIRS, Picture, Plan, Rays, Window, camera_wave};
@@ -552,7 +552,9 @@ fn needed(plan: &Plan, device: &Device, rays: u32) -> Needed {
     let longest = (u64::from(rays) * TEXELS_A_RAY).max(u64::from(MAX_DISC_PAIRS));
     let fits = longest <= u64::from(device.limits().max_texel_buffer_elements);
     let (camera, others) = (plan.camera_by_tree(), plan.by_tree());
-    let looks_around = plan.scene_bits() & (SCENE_BLENDS | SCENE_VALUES) != 0;
+    // Spheres and discs have a colour of their own.
+    let is_colored = |object: &ObjectInfo| object.first_color != NONE && object.slot_count > 0;
+    let looks_around = plan.scene_bits() & SCENE_BLENDS != 0 || plan.objects.iter().any(is_colored);
     Needed {
         lists: looks_around || !(camera && others),
         tree: fits && plan.takes_tree(),

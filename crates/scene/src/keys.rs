@@ -524,14 +524,15 @@ pub(crate) static SURFACE: Table = Table {
         key(
             "radius",
             Kind::Either(&[
-                Kind::Choice(&["auto"]),
+                Kind::Choice(&["auto", "local"]),
                 Kind::Prefixed("attribute:", "the name of an attribute of the points"),
                 LENGTH,
             ]),
             Value("\"auto\""),
-            "Kinds `spheres` and `discs` only: the radius of all, in scene units; or \
-             `\"attribute:NAME\"`, an attribute in the file's units, which is scaled with the object; \
-             `auto` is half the median distance between nearest points.",
+            "Kinds `spheres` and `discs` only: the radius of all, in scene units; `\"attribute:NAME\"`, an \
+             attribute in the file's units, which is scaled with the object; `auto`, half the median \
+             distance between nearest points, for all; or `local`, half the mean distance of each point's \
+             four nearest others, for sets of uneven density.",
         ),
         key(
             "radius_scale",

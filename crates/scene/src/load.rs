@@ -469,6 +469,7 @@ impl Surface {
             of: match table.value("radius") {
                 Value::Text(text) => match text.strip_prefix("attribute:") {
                     Some(name) => RadiusOf::Attribute(name.trim().to_owned()),
+                    None if text == "local" => RadiusOf::LocalSpacing,
                     None => RadiusOf::Spacing,
                 },
                 number => to_number(&number).map_or(RadiusOf::Spacing, RadiusOf::Length),

@@ -437,6 +437,8 @@ pub struct ShapeRadius {
 pub enum RadiusOf {
     /// Half the median distance from a point to its nearest other: one radius for the object.
     Spacing,
+    /// Half the mean distance from each point to its four nearest others.
+    LocalSpacing,
     /// One radius in scene units, 1e-12 to 1e15.
     Length(f64),
     /// Each point's value of the attribute of this name, in the file's units.

@@ -316,6 +316,7 @@ fn write_kind(out: &mut String, kind: &SurfaceKind) -> fmt::Result {
     writeln!(out, "kind = \"{kind}\"")?;
     match &radius.of {
         RadiusOf::Spacing => writeln!(out, "radius = \"auto\"")?,
+        RadiusOf::LocalSpacing => writeln!(out, "radius = \"local\"")?,
         RadiusOf::Length(length) => writeln!(out, "radius = {length:?}")?,
         RadiusOf::Attribute(name) => {
             writeln!(out, "radius = {}", quoted(&format!("attribute:{name}")))?;

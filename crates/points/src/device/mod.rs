@@ -18,6 +18,7 @@ mod work;
 
 pub use fitting::{kernels_of_fits, nearest_others};
 pub use scan::Scan;
+pub use shapes::kernels_of_shapes;
 pub use sort::{Pairs, Sort, SortSpace};
 pub use tree::Tree;
 

@@ -30,32 +30,58 @@ pub(crate) fn write_shapes(
     io: &ShapesIo<'_>,
     all: &[Shapes],
 ) -> Result<(), GpuError> {
-    let storage = |at| (at, Binding::StorageBuffer);
-    let bindings =
-        [SHAPE_POINTS, SHAPE_RADII, SHAPE_POLYNOMIALS, SHAPE_OUTCOMES, SHAPE_NORMALS].map(storage);
-    let kernel = |name, module: &[u32], bindings: &[(u32, Binding)]| {
-        Kernel::new(device, name, module, bindings, size_of::<ShapeParams>())
-    };
-    let any = |kind| all.iter().any(|shapes| shapes.kind == kind && shapes.count > 0);
-    if any(ShapeKind::Sphere) {
-        let spheres = kernel("shape_spheres", &spirv::shape_spheres(), &bindings[..4])?;
-        for shapes in all.iter().filter(|shapes| shapes.kind == ShapeKind::Sphere) {
-            write_batches(device, rec, ("shape_spheres", &spheres), io, shapes)?;
-        }
-    }
-    if any(ShapeKind::Disc) {
-        let discs = kernel("shape_discs", &spirv::shape_discs(), &bindings)?;
-        for shapes in all.iter().filter(|shapes| shapes.kind == ShapeKind::Disc) {
-            write_batches(device, rec, ("shape_discs", &discs), io, shapes)?;
+    for kind in [ShapeKind::Sphere, ShapeKind::Disc] {
+        let own = || all.iter().filter(|shapes| shapes.kind == kind && shapes.count > 0);
+        if own().next().is_some() {
+            let kernel = kernel_of(device, kind)?;
+            for shapes in own() {
+                write_batches(device, rec, &kernel, io, shapes)?;
+            }
         }
     }
     Ok(())
 }
 
+/// The kernels that these shapes take, to be [made ahead](Kernel::make_ahead).
+///
+/// # Errors
+/// A device that is too small for a kernel.
+pub fn kernels_of_shapes(device: &Arc<Device>, all: &[Shapes]) -> Result<Vec<Kernel>, GpuError> {
+    let kinds = [ShapeKind::Sphere, ShapeKind::Disc];
+    let any = |kind: &ShapeKind| all.iter().any(|shapes| shapes.kind == *kind && shapes.count > 0);
+    kinds.into_iter().filter(any).map(|kind| kernel_of(device, kind)).collect()
+}
+
+fn kernel_of(device: &Arc<Device>, kind: ShapeKind) -> Result<Kernel, GpuError> {
+    let bindings =
+        [SHAPE_POINTS, SHAPE_RADII, SHAPE_POLYNOMIALS, SHAPE_OUTCOMES, SHAPE_NORMALS].map(storage);
+    let params = size_of::<ShapeParams>();
+    match kind {
+        ShapeKind::Sphere => {
+            Kernel::new(device, name_of(kind), &spirv::shape_spheres(), &bindings[..4], params)
+        }
+        ShapeKind::Disc => {
+            Kernel::new(device, name_of(kind), &spirv::shape_discs(), &bindings, params)
+        }
+    }
+}
+
+fn storage(at: u32) -> (u32, Binding) {
+    (at, Binding::StorageBuffer)
+}
+
+/// Label and row of the timing table.
+fn name_of(kind: ShapeKind) -> &'static str {
+    match kind {
+        ShapeKind::Sphere => "shape_spheres",
+        ShapeKind::Disc => "shape_discs",
+    }
+}
+
 fn write_batches(
     device: &Arc<Device>,
     rec: &mut Work,
-    (name, kernel): (&'static str, &Kernel),
+    kernel: &Kernel,
     io: &ShapesIo<'_>,
     shapes: &Shapes,
 ) -> Result<(), GpuError> {
@@ -84,7 +110,7 @@ fn write_batches(
             has_normals: u32::from(normals.is_some()),
         };
         let mut pass = rec
-            .pass(name, kernel)
+            .pass(name_of(shapes.kind), kernel)
             .buffer_part(SHAPE_POINTS, io.points, points[0], points[1])
             .buffer(SHAPE_RADII, &radii)
             .buffer_part(SHAPE_POLYNOMIALS, io.polynomials, polynomials[0], polynomials[1])

@@ -8,7 +8,7 @@ use crate::state::RayLoop;
 use gpu::{Device, Kernel};
 use kernels::layout::SCENE_DIFFUSE;
 use plan::Plan;
-use points::device::{Needed, kernels_of_structures};
+use points::device::{Needed, kernels_of_shapes, kernels_of_structures};
 use std::sync::Arc;
 
 impl Renderer {
@@ -43,6 +43,7 @@ impl Renderer {
         }
         let any_points = !plan.cloud.points.is_empty();
         let needed = Needed { lists: needed.lists && any_points, ..needed };
+        likely.extend(kernels_of_shapes(device, &plan.shapes)?);
         likely.extend(kernels_of_structures(device, needed)?);
         if by_discs && any_points {
             likely.extend(Discs::kernels(device, form)?);

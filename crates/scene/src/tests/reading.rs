@@ -105,6 +105,11 @@ fn every_built_key_is_read() {
     };
     let (of, scale) = (RadiusOf::Spacing, 1.0);
     assert_eq!(kind("kind = \"discs\""), SurfaceKind::Discs(ShapeRadius { of, scale }));
+    let of = RadiusOf::LocalSpacing;
+    assert_eq!(
+        kind("kind = \"spheres\", radius = \"local\""),
+        SurfaceKind::Spheres(ShapeRadius { of, scale })
+    );
     let of = RadiusOf::Length(0.25);
     assert_eq!(
         kind("kind = \"discs\", radius = 0.25"),
