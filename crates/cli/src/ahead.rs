@@ -58,7 +58,7 @@ impl Ahead {
         };
         let objects = scene.objects.iter().filter(carries_surface);
         let fitted = |object: &Object| match object.surface.kind {
-            SurfaceKind::Points => Some(object.surface.neighbors),
+            SurfaceKind::Points => Some(object.surface.neighbors.count()),
             // Unless the file has normals.
             SurfaceKind::Discs(_) => Some(points::Shapes::NEIGHBORS),
             SurfaceKind::Spheres(_) => None,

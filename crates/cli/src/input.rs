@@ -4,7 +4,7 @@ use crate::args::{Overrides, UpAxis};
 use crate::errors::Failure;
 use crate::memory;
 use crate::progress::Progress;
-use plan::{MapProjection, Plan, SceneImages, SensorView, Window};
+use plan::{MapProjection, Plan, SceneImages, Window};
 use points::{Column, Columns, Dropped, PointSet, ReadOptions, Upwards, Wanted, Watch};
 use scene::{Albedo, ImageFile, Object, Scene, Units, Up};
 use serde_json::json;
@@ -155,13 +155,6 @@ impl Input {
         let in_degrees = (self.scene.objects.iter().zip(sets)).any(|(object, set)| {
             object.units == Units::Degrees || matches!(set.units, points::Units::Degrees(_))
         });
-        if let (Some(values), Some(view)) = (&self.undecided, plan::sensor_view(&self.scene, sets))
-        {
-            self.note_sensor(&view, progress);
-            let lights = Scene::for_sensor(&self.path, &view.camera, view.axes, values)?.lights;
-            let camera = Some(view.camera);
-            return Ok((Cow::Owned(Scene { lights, camera, ..self.scene.clone() }), self.up));
-        }
         let found = match in_degrees {
             true => Some((Upwards::Z, "as on maps")),
             false => sets.first().and_then(|set| set.up),
@@ -185,17 +178,6 @@ impl Input {
         }
         let lights = Scene::for_point_file(&self.path, turned, values)?.lights;
         Ok((Cow::Owned(Scene { lights, ..self.scene.clone() }), turned))
-    }
-
-    /// Says that the view is the sensor's, and how there is another.
-    fn note_sensor(&self, view: &SensorView, progress: &Progress) {
-        let [x, y, z] = view.camera.eye;
-        let [across, above] = view.angles;
-        progress.note(&format!(
-            "{}: one depth image, seen from where its sensor stood, {x} {y} {z}, {across:.0} by {above:.0} degrees; \
-             --up y, --up z or --up -y shows it from outside",
-            self.path.display()
-        ));
     }
 
     /// Every file that the picture is made from.
@@ -315,6 +297,10 @@ impl Input {
         for (object, apart) in &plan.apart {
             let file = self.scene.objects[*object].points.display();
             progress.note(&format!("warning: {file}: {apart}"));
+        }
+        for denoising in &plan.denoised {
+            let file = self.scene.objects[denoising.object].points.display();
+            progress.note(&format!("{file}: {denoising}"));
         }
         for missing in &plan.missing {
             progress.note(&format!("warning: {missing}"));

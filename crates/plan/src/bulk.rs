@@ -1,12 +1,13 @@
 //! What a scene is framed, centred and measured by: its points without strays ([`points::Strays`]).
 
+use crate::shapes::scatter_kind;
 use crate::{PlanError, isolated};
 use points::{
     Apart, Cloud, CloudError, ObjectPoints, PointSet, Strays, Watch, bounds_of, origin_of,
     rough_origin,
 };
 use rayon::prelude::*;
-use scene::{Object, Scene};
+use scene::{Neighbors, Object, Scene, SurfaceKind};
 use std::sync::Arc;
 
 /// Strays of a volume that lie this part of the bulk's diagonal outside it, or less, are in the picture as well.
@@ -22,6 +23,8 @@ pub(crate) struct Bulk {
     /// What volumes are made of: strays as well where they lie no farther than the bulk's diagonal from its box. A
     /// droplet counts; a grid of cells over empty space is of no use.
     pub particles: Vec<(Arc<PointSet>, World)>,
+    /// Of surfaces whose noise is smoothed: all points that are no farther off, with which of them are strays.
+    with_strays: Vec<Option<(Arc<PointSet>, Vec<bool>)>>,
     pub apart: Vec<(usize, Apart)>,
     /// How many isolated points each object lost.
     pub isolated: Vec<u64>,
@@ -58,6 +61,7 @@ impl Bulk {
             sets: Vec::new(),
             world: Vec::new(),
             particles: Vec::new(),
+            with_strays: Vec::new(),
             apart: Vec::new(),
             isolated: Vec::new(),
             point_count: 0,
@@ -89,6 +93,7 @@ impl Bulk {
             self.world.push(Arc::clone(world));
             self.particles.push(all);
             self.orders.push(Some(strays.order));
+            self.with_strays.push(None);
             return;
         }
         let index = self.sets.len();
@@ -109,6 +114,14 @@ impl Bulk {
         let (bulk_set, bulk_world) = without(&strays.places);
         let far = |&&place: &&u32| strays.distance(&world[place as usize]) > diagonal;
         let far: Vec<u32> = strays.places.iter().filter(far).copied().collect();
+        self.with_strays.push(draws_strays(object).then(|| {
+            let mut keep = vec![true; set.len()];
+            far.iter().for_each(|&place| keep[place as usize] = false);
+            let mut is_stray = vec![false; set.len()];
+            strays.places.iter().for_each(|&place| is_stray[place as usize] = true);
+            let is_stray = is_stray.iter().zip(&keep).filter(|(_, keep)| **keep);
+            (Arc::new(set.filtered(|i| keep[i])), is_stray.map(|(is_stray, _)| *is_stray).collect())
+        }));
         self.particles.push(match (is_volume, far.is_empty()) {
             (false, _) => (Arc::clone(&bulk_set), Arc::clone(&bulk_world)),
             (true, true) => all,
@@ -119,6 +132,11 @@ impl Bulk {
         self.orders.push(None);
     }
 
+    /// The points of an object with those of its strays that are drawn if it has noise, and which these are.
+    pub(crate) fn near_strays(&self, object: usize) -> Option<&(Arc<PointSet>, Vec<bool>)> {
+        self.with_strays[object].as_ref()
+    }
+
     /// Drops the isolated points of the last object, where it asks for that: after its strays, since one of these makes
     /// the deviations so large that no other point is beyond them.
     fn drop_isolated(&mut self, object: &Object, watch: &dyn Watch) -> Result<(), PlanError> {
@@ -127,7 +145,8 @@ impl Bulk {
         let deviations = object.surface.drop_isolated;
         if deviations > 0.0 {
             let set = &self.sets[index];
-            let keep = isolated::near_points(set, object.surface.neighbors, deviations, watch)?;
+            let keep =
+                isolated::near_points(set, object.surface.neighbors.count(), deviations, watch)?;
             let dropped = keep.iter().filter(|keep| !**keep).count();
             if dropped > 0 {
                 let (set, world) = kept(set, &self.world[index], &keep);
@@ -165,6 +184,16 @@ impl Bulk {
             .collect();
         Cloud::within(self.bounds, &object_points, watch)
     }
+}
+
+/// Whether strays are drawn, if the points have noise.
+fn draws_strays(object: &Object) -> bool {
+    let is_smoothed = matches!(object.surface.neighbors, Neighbors::Auto { .. });
+    let is_surface = object.volume.is_none() && object.surface.kind == SurfaceKind::Points;
+    is_smoothed
+        && is_surface
+        && object.surface.drop_isolated == 0.0
+        && scatter_kind(object).is_some()
 }
 
 /// The points of a set that are to be kept, with their places in the world.

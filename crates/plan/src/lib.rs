@@ -9,11 +9,11 @@ mod bulk;
 mod camera;
 mod colors;
 mod degrees;
+mod denoise;
 mod diagnostic;
 mod discs;
 mod error;
 mod filter;
-mod first_view;
 mod images;
 mod inside;
 mod isolated;
@@ -28,10 +28,10 @@ mod volumes;
 
 pub use camera::View;
 pub use degrees::{MapProjection, in_degrees};
+pub use denoise::Denoising;
 pub use diagnostic::Diagnostic;
 pub use discs::{MAX_DISC_PAIRS, screen_tiles};
 pub use error::PlanError;
-pub use first_view::{SensorView, sensor_view};
 pub use images::{Cleaned, SceneImages};
 pub use missing::{Lacking, Missing};
 pub use needs::{columns as point_columns, filter as point_filter, read_options};
@@ -40,6 +40,7 @@ pub use shapes::{ShapeKind, Shapes, scatter_kind};
 pub use volumes::Volumes;
 
 use bulk::Bulk;
+use denoise::denoise;
 use images::{ImageList, Use};
 use kernels::layout::{
     self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, LIGHT_DIRECTIONAL,
@@ -141,6 +142,8 @@ pub struct Plan {
     pub isolated: Vec<u64>,
     /// The strays of each object that has any, by its index.
     pub apart: Vec<(usize, Apart)>,
+    /// What was done to objects whose points have noise.
+    pub denoised: Vec<Denoising>,
     /// Points that lack what is shown of them.
     pub missing: Vec<Missing>,
     /// Diagnostics that the film is to have, each at most once. None at first.
@@ -189,16 +192,23 @@ impl Plan {
         let (metric, projection) = degrees::projected(scene, sets, watch)?;
         let image_size = scene.image.size;
         let window = checked_crop(crop, image_size)?;
-        let bulk = Bulk::of(scene, &metric, sets, watch)?;
-        let surface_sets: Vec<Arc<PointSet>> = (scene.objects.iter().zip(&bulk.sets))
+        let mut bulk = Bulk::of(scene, &metric, sets, watch)?;
+        let mut surface_sets: Vec<Arc<PointSet>> = (scene.objects.iter().zip(&bulk.sets))
             .map(|(object, set)| volumes::surface_points(object, set, watch))
             .collect::<Result<_, _>>()?;
         watch.stage("sorting points", surface_sets.iter().map(|set| set.len() as u64).sum());
-        let cloud = bulk.cloud(scene, &surface_sets, watch)?;
+        let mut cloud = bulk.cloud(scene, &surface_sets, watch)?;
+        let smoothed = denoise(scene, &bulk, &mut surface_sets, &mut cloud, watch)?;
+        for (index, apart) in &mut bulk.apart {
+            let own = smoothed.found.iter().find(|denoising| denoising.object == *index);
+            apart.is_drawn = own.is_some_and(|denoising| denoising.has_strays);
+        }
         let coarse = precision::warnings(scene, sets, &metric, cloud.origin);
         let mut missing = Vec::new();
         let volumes = volumes::plan_volumes(scene, &bulk, &cloud, (watch, &mut missing))?;
-        let shapes = shapes::whole_objects(scene, &surface_sets, &cloud, (watch, &mut missing))?;
+        let mut shapes =
+            shapes::whole_objects(scene, &surface_sets, &cloud, (watch, &mut missing))?;
+        shapes.extend(smoothed.shapes);
         let surfaces: Vec<SlotRange> = (0..scene.objects.len())
             .map(|index| shapes::surface_slots(&cloud, &shapes, index))
             .collect();
@@ -281,6 +291,7 @@ impl Plan {
             names: scene.objects.iter().map(|object| object.name.clone()).collect(),
             isolated: bulk.isolated,
             apart: bulk.apart,
+            denoised: smoothed.found,
             projection,
             coarse,
             missing,

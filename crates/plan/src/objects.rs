@@ -32,7 +32,7 @@ fn rim_limit(neighbors: u32) -> f32 {
 
 /// `slots` are those that carry the object's surface.
 pub(crate) fn fit_params(object: &Object, index: u32, slots: SlotRange) -> FitParams {
-    let neighbors = object.surface.neighbors.min(slots.count.saturating_sub(1)).max(1);
+    let neighbors = object.surface.neighbors.count().min(slots.count.saturating_sub(1)).max(1);
     FitParams {
         first_slot: slots.first_slot,
         point_count: slots.count,

@@ -164,6 +164,7 @@ impl Strays {
             farthest: self.farthest,
             size: size_of(self.bulk),
             is_volume: false,
+            is_drawn: false,
             filter: (self.farthest > 0.0).then(|| filter(object, bulk_of(in_file, &self.places))),
         }
     }

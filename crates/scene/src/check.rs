@@ -291,6 +291,7 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
                     (kind, value),
                     (Kind::Choice(_) | Kind::Text(_), Value::Text(_))
                         | (Kind::Number(_), Value::Integer(_) | Value::Float(_))
+                        | (Kind::Integer { .. }, Value::Integer(_))
                         | (Kind::Vector(_) | Kind::Pair(_), Value::List(_))
                 )
             };

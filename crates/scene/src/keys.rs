@@ -6,7 +6,7 @@
 use crate::read::Reader;
 use crate::whole::{
     background_is_one, box_has_an_inside, camera_has_a_view, direction_has_a_length,
-    material_has_one_color, radius_has_shapes, stops_ascend, volume_says_it_once,
+    material_has_one_color, stops_ascend, surface_has_no_key_in_vain, volume_says_it_once,
 };
 
 /// A key's name and what is wrong with its value.
@@ -109,7 +109,7 @@ pub(crate) struct Numbers {
 }
 
 /// Largest magnitude of a coordinate or radiometric value: its square is still far inside f32.
-pub(crate) const LARGE: f64 = 1e15;
+const LARGE: f64 = 1e15;
 /// Shortest length that counts as one.
 pub(crate) const SHORT: f64 = 1e-12;
 
@@ -511,7 +511,7 @@ pub(crate) static TRANSFORM: Table = Table {
 pub(crate) static SURFACE: Table = Table {
     header: "[objects.surface]",
     doc: "How the surface is fitted. Lengths are scene units, after the transform.",
-    whole: Some(radius_has_shapes),
+    whole: Some(surface_has_no_key_in_vain),
     keys: &[
         key(
             "kind",
@@ -545,10 +545,23 @@ pub(crate) static SURFACE: Table = Table {
             "scatter",
             Kind::Choice(&["discs", "spheres", "drop"]),
             Value("\"discs\""),
-            "Kind `points` only: how points are drawn that lie on no surface: as small discs, small \
-             spheres, or not at all. Of glass, which has an inside, discs are spheres.",
+            "Neighbors `auto` only, where points have noise: how those are drawn that lie on no surface: as \
+             small discs, small spheres, or not at all. Of glass, which has an inside, discs are spheres.",
         ),
-        key("neighbors", count(3, 256, "points"), Value("16"), "Nearest other points of a fit."),
+        key(
+            "neighbors",
+            Kind::Either(&[Kind::Choice(&["auto"]), count(3, 256, "points")]),
+            Value("\"auto\""),
+            "Nearest other points of a fit. `auto` is 16, and where points have noise, they are first moved \
+             onto the surface that they are samples of; a number, or one of `feature_size`, \
+             `weight_width` and `refine` being given, takes them as they are.",
+        ),
+        key(
+            "accuracy",
+            Kind::Number(numbers(0.1, 30.0, "degrees")),
+            Value("2.5"),
+            "Neighbors `auto` only: the error of normals up to which noise is smoothed. Smaller is smoother.",
+        ),
         key(
             "polynomial",
             Kind::Choice(&["full", "incomplete"]),

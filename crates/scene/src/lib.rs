@@ -33,9 +33,9 @@ pub use error::SceneError;
 pub use models::MODELS_VARIABLE;
 pub use scene::{
     Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
-    ImageSettings, Light, Material, MaterialKind, Normals, Object, PerParticle, PointColumn,
-    PointColumns, PointFilter, Polynomial, Primary, Projection, RadiusOf, RayLoop, Refine,
-    RenderSettings, Scatter, Scene, Secondary, ShapeRadius, Stop, Surface, SurfaceKind,
+    ImageSettings, Light, Material, MaterialKind, Neighbors, Normals, Object, PerParticle,
+    PointColumn, PointColumns, PointFilter, Polynomial, Primary, Projection, RadiusOf, RayLoop,
+    Refine, RenderSettings, Scatter, Scene, Secondary, ShapeRadius, Stop, Surface, SurfaceKind,
     TextureAxis, Transfer, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
 };
 pub use schema::{json_schema, suite_json_schema};

@@ -389,8 +389,8 @@ pub struct Surface {
     pub kind: SurfaceKind,
     /// How points are drawn that lie on no surface.
     pub scatter: Scatter,
-    /// Nearest other points of a fit, 3 to 256.
-    pub neighbors: u32,
+    /// Nearest other points of a fit.
+    pub neighbors: Neighbors,
     /// Which terms the polynomial has.
     pub polynomial: Polynomial,
     /// The length h that weights and trust radii are measured by.
@@ -410,6 +410,32 @@ pub struct Surface {
     pub normals: Normals,
     /// What becomes of a hit with a stored polynomial.
     pub refine: Refine,
+}
+
+/// Nearest other points of a fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Neighbors {
+    /// [`FEW`](Self::FEW), after points with noise were moved onto their surface (docs/method.md, section 1).
+    Auto {
+        /// The error of normals up to which noise is smoothed, 0.1 to 30 degrees.
+        accuracy: f64,
+    },
+    /// So many, 3 to 256, of the points where they lie.
+    Count(u32),
+}
+
+impl Neighbors {
+    /// Those of points without noise.
+    pub const FEW: u32 = 16;
+
+    /// How many.
+    #[must_use]
+    pub fn count(self) -> u32 {
+        match self {
+            Self::Auto { .. } => Self::FEW,
+            Self::Count(count) => count,
+        }
+    }
 }
 
 /// What is drawn of an object's points (docs/method.md, section 1).

@@ -1,10 +1,10 @@
 //! A scene as canonical TOML, for the header of the pictures it makes.
 
 use crate::{
-    Albedo, Boundary, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Normals, Object,
-    PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, Projection, RadiusOf, Refine,
-    RenderSettings, Scene, Surface, SurfaceKind, TextureAxis, Transfer, Units, Volume,
-    VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
+    Albedo, Boundary, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Neighbors,
+    Normals, Object, PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, Projection,
+    RadiusOf, Refine, RenderSettings, Scatter, Scene, Surface, SurfaceKind, TextureAxis, Transfer,
+    Units, Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
 };
 use std::fmt::{self, Write};
 
@@ -280,14 +280,44 @@ fn write_surface(out: &mut String, surface: &Surface) -> fmt::Result {
     };
     writeln!(out, "\n[objects.surface]")?;
     write_kind(out, &surface.kind)?;
-    writeln!(out, "neighbors = {}", surface.neighbors)?;
     writeln!(out, "polynomial = \"{polynomial}\"")?;
+    match surface.neighbors {
+        // With one of the others it would be a number.
+        Neighbors::Auto { accuracy } => {
+            writeln!(out, "neighbors = \"auto\"")?;
+            writeln!(out, "accuracy = {accuracy:?}")?;
+            let scatter = match surface.scatter {
+                Scatter::Discs => "discs",
+                Scatter::Spheres => "spheres",
+                Scatter::Drop => "drop",
+            };
+            if surface.kind == SurfaceKind::Points {
+                writeln!(out, "scatter = \"{scatter}\"")?;
+            }
+        }
+        Neighbors::Count(count) => {
+            writeln!(out, "neighbors = {count}")?;
+            write_fit(out, surface)?;
+        }
+    }
+    writeln!(out, "trust = {:?}", surface.trust)?;
+    let normals = match surface.normals {
+        Normals::Polynomial => "polynomial",
+        Normals::Blended => "blended",
+    };
+    writeln!(out, "normals = \"{normals}\"")?;
+    writeln!(out, "drop_isolated = {:?}", surface.drop_isolated)?;
+    writeln!(out, "close_gaps = {}", surface.close_gaps)?;
+    writeln!(out, "boundary_clip = {}", surface.boundary_clip)
+}
+
+/// How the surface is fitted to the points where they lie.
+fn write_fit(out: &mut String, surface: &Surface) -> fmt::Result {
     match surface.feature_size {
         FeatureSize::Adaptive => writeln!(out, "feature_size = \"adaptive\"")?,
         FeatureSize::Smoothed => writeln!(out, "feature_size = \"smoothed\"")?,
         FeatureSize::Constant(length) => writeln!(out, "feature_size = {length:?}")?,
     }
-    writeln!(out, "trust = {:?}", surface.trust)?;
     match surface.refine {
         Refine::None => writeln!(out, "refine = \"none\"")?,
         Refine::Project { tolerance, max_iterations } => {
@@ -296,15 +326,7 @@ fn write_surface(out: &mut String, surface: &Surface) -> fmt::Result {
             writeln!(out, "max_iterations = {max_iterations}")?;
         }
     }
-    let normals = match surface.normals {
-        Normals::Polynomial => "polynomial",
-        Normals::Blended => "blended",
-    };
-    writeln!(out, "normals = \"{normals}\"")?;
-    writeln!(out, "drop_isolated = {:?}", surface.drop_isolated)?;
-    writeln!(out, "weight_width = {:?}", surface.weight_width)?;
-    writeln!(out, "close_gaps = {}", surface.close_gaps)?;
-    writeln!(out, "boundary_clip = {}", surface.boundary_clip)
+    writeln!(out, "weight_width = {:?}", surface.weight_width)
 }
 
 fn write_kind(out: &mut String, kind: &SurfaceKind) -> fmt::Result {

@@ -2,6 +2,7 @@
 
 use crate::document::{Origin, Value};
 use crate::keys::{Fault, SHORT, plain};
+use crate::load::key_of_points_as_they_are;
 use crate::read::Reader;
 
 /// The sine of the smallest angle between `up` and the line of sight.
@@ -199,8 +200,8 @@ fn isosurface_fits(volume: &Reader<'_>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Only spheres and discs have a radius, and only a surface leaves points over.
-pub(crate) fn radius_has_shapes(surface: &Reader<'_>) -> Result<(), Fault> {
+/// Only spheres and discs have a radius, only a surface leaves points over, and only noise is smoothed.
+pub(crate) fn surface_has_no_key_in_vain(surface: &Reader<'_>) -> Result<(), Fault> {
     let kind = surface.text("kind");
     let of_shapes = kind != "points";
     let owned = [
@@ -213,6 +214,14 @@ pub(crate) fn radius_has_shapes(surface: &Reader<'_>) -> Result<(), Fault> {
             let message = format!("belongs to {owner}, but kind is \"{kind}\"; remove one");
             return Err((name, message));
         }
+    }
+    if let (Some(_), Some(key)) = (surface.written("accuracy"), key_of_points_as_they_are(surface))
+    {
+        let found = if key == "neighbors" { "is a number" } else { "is given" };
+        let message = format!(
+            "belongs to neighbors \"auto\", but {key} {found}, by which points are taken as they are; remove one"
+        );
+        return Err(("accuracy", message));
     }
     Ok(())
 }

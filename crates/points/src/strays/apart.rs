@@ -17,17 +17,19 @@ pub struct Apart {
     pub size: f64,
     /// Whether the points make a volume, and no surface.
     pub is_volume: bool,
+    /// Whether those that lie near the others are drawn, small.
+    pub is_drawn: bool,
     /// The option of the command line that leaves out those that lie outside it, if any do.
     pub filter: Option<String>,
 }
 
 impl fmt::Display for Apart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { count, is_counted, of, farthest, size, is_volume, filter } = self;
+        let Self { count, is_counted, of, farthest, size, is_volume, is_drawn, filter } = self;
         let about = if *is_counted { "" } else { "about " };
-        let (lie, they, show, count_not) = match count {
-            1 => ("lies", "it", "shows", "does"),
-            _ => ("lie", "they", "show", "do"),
+        let (lie, they, show, count_not, are) = match count {
+            1 => ("lies", "it", "shows", "does", "is"),
+            _ => ("lie", "they", "show", "do", "are"),
         };
         write!(f, "{about}{count} of {of} points {lie} far from all others")?;
         if *farthest > 0.0 {
@@ -35,6 +37,10 @@ impl fmt::Display for Apart {
             write!(f, ", up to {farthest} outside the rest, which is {size} wide")?;
         }
         match is_volume {
+            false if *is_drawn => write!(
+                f,
+                "; {they} {are} drawn small if no farther off than the rest is wide, and {count_not} not count for the view"
+            )?,
             false => {
                 write!(f, "; {they} {show} no surface and {count_not} not count for the view")?
             }
@@ -113,6 +119,7 @@ mod tests {
             farthest: 590.1,
             size: 2.0,
             is_volume: false,
+            is_drawn: false,
             filter: Some("F".into()),
         };
         assert_eq!(

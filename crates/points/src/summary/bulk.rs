@@ -181,6 +181,7 @@ impl Passing {
             farthest,
             size: size_of(bulk),
             is_volume: false,
+            is_drawn: false,
             filter: (farthest > 0.0).then(|| filter(0, bulk)),
         });
         Some(Found { bulk, apart })

@@ -228,7 +228,6 @@ impl Second {
             spacing_sample: spacing_sample.flatten(),
             notes: set.notes.clone(),
             units: set.units.clone(),
-            sensors: set.sensors.clone(),
         }
     }
 }

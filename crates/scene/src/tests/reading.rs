@@ -75,7 +75,7 @@ fn every_built_key_is_read() {
         surface: Surface {
             kind: SurfaceKind::Points,
             scatter: Scatter::Discs,
-            neighbors: 20,
+            neighbors: Neighbors::Count(20),
             polynomial: Polynomial::Incomplete,
             feature_size: FeatureSize::Constant(0.25),
             trust: 0.75,
@@ -217,7 +217,7 @@ fn what_is_left_out_is_the_contracts_default() {
     let surface = Surface {
         kind: SurfaceKind::Points,
         scatter: Scatter::Discs,
-        neighbors: 16,
+        neighbors: Neighbors::Auto { accuracy: 2.5 },
         polynomial: Polynomial::Full,
         feature_size: FeatureSize::Adaptive,
         trust: 0.6,
