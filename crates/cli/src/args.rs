@@ -1,5 +1,6 @@
 //! What may be typed. Values are checked for their form here, for their range by the scene.
 
+use crate::point_file::ColorBy;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use film::{Tone, ToneCurve};
@@ -73,6 +74,10 @@ pub struct RenderArgs {
     /// _ passes a column over
     #[arg(long, value_name = "LIST", value_parser = points::Columns::in_order)]
     pub columns: Option<points::Columns>,
+    /// What colours the points of a point file: points (their own), height, intensity, or an attribute by
+    /// its name [default: their own; else, where they fill a volume, the first scalar; else intensity]
+    #[arg(long, value_name = "WHAT", value_parser = ColorBy::parse)]
+    pub color: Option<ColorBy>,
     #[command(flatten)]
     pub device: DeviceArgs,
     /// Write times and counts of this render as JSON

@@ -3,6 +3,7 @@
 use crate::args::{Overrides, UpAxis};
 use crate::errors::Failure;
 use crate::memory;
+use crate::point_file::{ColorBy, PointFile};
 use crate::progress::Progress;
 use plan::{MapProjection, Plan, SceneImages, Window};
 use points::{Column, Columns, Dropped, PointSet, ReadOptions, Upwards, Wanted, Watch};
@@ -24,8 +25,8 @@ pub struct Input {
     pub scene: Scene,
     /// What turns the view where the scene has no camera.
     up: Up,
-    /// Of a point file whose points decide which way is up: the values that the scene was made with.
-    undecided: Option<Vec<String>>,
+    /// Of a point file without a scene.
+    point_file: Option<PointFile>,
 }
 
 /// Options of the command line that stand for values of the scene, later ones over earlier ones.
@@ -137,13 +138,49 @@ impl Input {
                 path.display()
             )));
         }
-        if let ([object], false) = (scene.objects.as_mut_slice(), is_scene_file(path)) {
-            // A header must not tell in which folder of which machine a picture was made.
-            object.points_as_written =
-                path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let point_file = (!is_scene_file(path)).then(|| {
+            leave_out_folder(&mut scene, path);
+            PointFile { values: set, up_is_open: up.is_none(), color: None }
+        });
+        Ok(Self { path: path.into(), scene, up: turned, point_file })
+    }
+
+    /// With `--color`, which is for point files.
+    pub fn colored_by(mut self, color: Option<ColorBy>) -> Result<Self, Failure> {
+        match (&mut self.point_file, color) {
+            (_, None) => {}
+            (Some(point_file), color) => point_file.color = color,
+            (None, Some(_)) => {
+                return Err(Failure::usage(format!(
+                    "{}: --color is for point files, but this is a scene; set material.albedo in it",
+                    self.path.display()
+                )));
+            }
         }
-        let undecided = (!is_scene_file(path) && up.is_none()).then_some(set);
-        Ok(Self { path: path.into(), scene, up: turned, undecided })
+        Ok(self)
+    }
+
+    /// Which way is up in these points, and why, if anything says so.
+    fn found_up(&self, sets: &[Arc<PointSet>]) -> Option<(Upwards, &'static str)> {
+        let in_degrees = (self.scene.objects.iter().zip(sets)).any(|(object, set)| {
+            object.units == Units::Degrees || matches!(set.units, points::Units::Degrees(_))
+        });
+        let is_open = self.point_file.as_ref().is_some_and(|file| file.up_is_open);
+        match in_degrees {
+            _ if !is_open => None,
+            true => Some((Upwards::Z, "as on maps")),
+            false => sets.first().and_then(|set| set.up),
+        }
+    }
+
+    /// The same as a view is turned by it.
+    fn up_of(&self, sets: &[Arc<PointSet>]) -> Up {
+        match self.found_up(sets) {
+            Some((Upwards::Y, _)) => Up::Y,
+            Some((Upwards::Z, _)) => Up::Z,
+            Some((Upwards::MinusY, _)) => Up::MinusY,
+            None => self.up,
+        }
     }
 
     /// The scene, and which way is up in it, now that the points are known.
@@ -152,21 +189,10 @@ impl Input {
         sets: &[Arc<PointSet>],
         progress: &Progress,
     ) -> Result<(Cow<'_, Scene>, Up), Failure> {
-        let in_degrees = (self.scene.objects.iter().zip(sets)).any(|(object, set)| {
-            object.units == Units::Degrees || matches!(set.units, points::Units::Degrees(_))
-        });
-        let found = match in_degrees {
-            true => Some((Upwards::Z, "as on maps")),
-            false => sets.first().and_then(|set| set.up),
-        };
-        let (Some(values), Some((up, why))) = (&self.undecided, found) else {
+        let (Some(point_file), Some((up, why))) = (&self.point_file, self.found_up(sets)) else {
             return Ok((Cow::Borrowed(&self.scene), self.up));
         };
-        let turned = match up {
-            Upwards::Y => Up::Y,
-            Upwards::Z => Up::Z,
-            Upwards::MinusY => Up::MinusY,
-        };
+        let turned = self.up_of(sets);
         if self.scene.camera.is_none() {
             let file = self.path.display();
             let others: Vec<String> = ([Upwards::Y, Upwards::Z, Upwards::MinusY].iter())
@@ -176,7 +202,7 @@ impl Input {
             let [axis, others] = [up.name().to_owned(), others.join(" or ")];
             progress.note(&format!("{file}: {axis} is up, {why}; {others} says otherwise"));
         }
-        let lights = Scene::for_point_file(&self.path, turned, values)?.lights;
+        let lights = Scene::for_point_file(&self.path, turned, &point_file.values)?.lights;
         Ok((Cow::Owned(Scene { lights, ..self.scene.clone() }), turned))
     }
 
@@ -228,10 +254,34 @@ impl Input {
         Ok(plan::checked_crop(crop, self.scene.image.size)?)
     }
 
-    /// Reads of every object's points what a render needs, and tells of those that are of no use or left
-    /// out.
-    pub fn read_points(&self, progress: &Progress) -> Result<Vec<Arc<PointSet>>, Failure> {
-        self.read_as(plan::read_options, progress)
+    /// Reads of every object's points what a render needs, and reports those that are of no use or left out. How a
+    /// point file is shown is decided by its points.
+    pub fn read_points(&mut self, progress: &Progress) -> Result<Vec<Arc<PointSet>>, Failure> {
+        let Some(point_file) = &self.point_file else {
+            return self.read_as(plan::read_options, progress);
+        };
+        let mut sets = self.read_as(|object| point_file.options(object), progress)?;
+        let up = self.up_of(&sets);
+        let read_all = || {
+            let object = &self.scene.objects[0];
+            let options = ReadOptions { wanted: Wanted::All, ..plan::read_options(object) };
+            progress.stage(
+                "reading attributes",
+                fs::metadata(&object.points).map_or(0, |file| file.len()),
+            );
+            let set =
+                points::read_with(&object.points, &options, &mut |done, _| progress.done(done));
+            progress.clear();
+            Ok(set?)
+        };
+        let Some(first) = sets.first_mut() else { return Ok(sets) };
+        let mut values = point_file.choose(&self.scene, first, up, read_all, progress)?;
+        if !values.is_empty() {
+            values.extend(point_file.values.iter().cloned());
+            self.scene = Scene::for_point_file(&self.path, self.up, &values)?;
+            leave_out_folder(&mut self.scene, &self.path);
+        }
+        Ok(sets)
     }
 
     /// The same with everything that the files have.
@@ -360,6 +410,14 @@ fn note_projection(projection: &MapProjection, progress: &Progress) {
              centre; choose a smaller part by objects.filter for true proportions",
             100.0 * projection.stretch
         ));
+    }
+}
+
+/// A header must not tell in which folder of which machine a picture was made.
+fn leave_out_folder(scene: &mut Scene, path: &Path) {
+    if let [object] = scene.objects.as_mut_slice() {
+        object.points_as_written =
+            path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     }
 }
 

@@ -16,6 +16,7 @@ mod files;
 mod input;
 mod interrupt;
 mod memory;
+mod point_file;
 mod progress;
 mod provenance;
 mod stats;

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use scene::{Neighbors, Object, Scene, SurfaceKind};
 use std::sync::Arc;
 
-/// Strays of a volume that lie this part of the bulk's diagonal outside it, or less, are in the picture as well.
+/// Strays among particles that lie this part of the bulk's diagonal outside it, or less, are in the picture as well.
 const RIM: f64 = 0.05;
 
 /// Positions in the world of the points of an object.
@@ -20,8 +20,8 @@ pub(crate) type World = Arc<Vec<[f64; 3]>>;
 pub(crate) struct Bulk {
     pub sets: Vec<Arc<PointSet>>,
     pub world: Vec<World>,
-    /// What volumes are made of: strays as well where they lie no farther than the bulk's diagonal from its box. A
-    /// droplet counts; a grid of cells over empty space is of no use.
+    /// What volumes are made of, and what is drawn as spheres or discs: strays as well where they lie no farther than
+    /// the bulk's diagonal from its box. A droplet counts; a grid of cells over empty space is of no use.
     pub particles: Vec<(Arc<PointSet>, World)>,
     /// Of surfaces whose noise is smoothed: all points that are no farther off, with which of them are strays.
     with_strays: Vec<Option<(Arc<PointSet>, Vec<bool>)>>,
@@ -105,8 +105,8 @@ impl Bulk {
             places.iter().for_each(|&place| keep[place as usize] = false);
             kept(set, world, &keep)
         };
-        let is_volume = object.volume.is_some();
-        // Of the particles at the rim of a volume nothing is lost.
+        let is_volume = object.volume.is_some() || object.surface.kind != SurfaceKind::Points;
+        // Of the particles at the rim nothing is lost.
         if !is_volume || strays.farthest > RIM * diagonal {
             let apart = strays.apart(index, &file.positions);
             self.apart.push((index, Apart { is_volume, ..apart }));
@@ -161,7 +161,15 @@ impl Bulk {
         Ok(())
     }
 
-    /// The cloud of what carries a surface: of each object these points, which are all of its bulk or some.
+    /// The points of an object that are drawn: strays say nothing about a surface, but each sphere stands for itself.
+    pub(crate) fn drawn(&self, scene: &Scene, index: usize) -> &Arc<PointSet> {
+        match scene.objects[index].surface.kind {
+            SurfaceKind::Points => &self.sets[index],
+            SurfaceKind::Spheres(_) | SurfaceKind::Discs(_) => &self.particles[index].0,
+        }
+    }
+
+    /// The cloud of what is drawn: of each object these points, which are all of its bulk or some.
     pub(crate) fn cloud(
         &self,
         scene: &Scene,

@@ -112,7 +112,7 @@ pub(crate) fn attribute_colors(
             return marked(NO_VALUE);
         }
         // Halves, so that no difference of two numbers overflows.
-        let part = match span > 0.0 {
+        let part = match span != 0.0 {
             true => (0.5 * value - 0.5 * low) / (0.5 * high - 0.5 * low),
             false => 0.5,
         };

@@ -193,8 +193,10 @@ impl Plan {
         let image_size = scene.image.size;
         let window = checked_crop(crop, image_size)?;
         let mut bulk = Bulk::of(scene, &metric, sets, watch)?;
-        let mut surface_sets: Vec<Arc<PointSet>> = (scene.objects.iter().zip(&bulk.sets))
-            .map(|(object, set)| volumes::surface_points(object, set, watch))
+        let mut surface_sets: Vec<Arc<PointSet>> = (0..scene.objects.len())
+            .map(|index| {
+                volumes::surface_points(&scene.objects[index], bulk.drawn(scene, index), watch)
+            })
             .collect::<Result<_, _>>()?;
         watch.stage("sorting points", surface_sets.iter().map(|set| set.len() as u64).sum());
         let mut cloud = bulk.cloud(scene, &surface_sets, watch)?;

@@ -9,6 +9,7 @@ pub use histogram::{Histogram, Range};
 pub use passes::summarize;
 
 use crate::cloud::origin_of;
+use crate::dimension::Dimension;
 use crate::strays::Apart;
 use crate::units::Units;
 use serde_json::{Map, Value, json};
@@ -49,6 +50,8 @@ pub struct PointSummary {
     pub notes: Vec<String>,
     /// What x and y are.
     pub units: Units,
+    /// What the points fill; `None` where nobody has [looked](Dimension::of), which takes all points at once.
+    pub dimension: Option<Dimension>,
 }
 
 /// How many points were dropped, and why.
@@ -115,6 +118,13 @@ impl PointSummary {
                 Units::Degrees(_) => "degrees",
                 Units::Lengths | Units::LikeDegrees => "lengths",
             },
+            "shape": self.dimension.map(|dimension| json!({
+                "volume": dimension.is_volume(),
+                "sign": match dimension {
+                    Dimension::Surface => None,
+                    Dimension::Volume(sign) => Some(sign.to_string()),
+                },
+            })),
         })
     }
 }
@@ -165,6 +175,9 @@ impl fmt::Display for PointSummary {
         }
         if let Units::Degrees(reason) = &self.units {
             write!(f, "\nunits    longitude and latitude in degrees, since {reason}")?;
+        }
+        if let Some(dimension) = &self.dimension {
+            write!(f, "\nshape    {dimension}")?;
         }
         if self.attributes.is_empty() {
             return Ok(());
@@ -231,6 +244,7 @@ mod tests {
             "spacing_sample": null,
             "notes": [],
             "units": "lengths",
+            "shape": null,
         });
         let mut others = json.clone();
         let attributes = others.as_object_mut().unwrap().remove("attributes").unwrap();

@@ -667,9 +667,10 @@ pub(crate) static MATERIAL: Table = Table {
         ),
         key(
             "value_range",
-            Kind::Range(numbers(-1e300, 1e300, "in the attribute's unit")),
+            Kind::Pair(numbers(-1e300, 1e300, "in the attribute's unit")),
             Words("the attribute's own range", "[0.0, 1.0]"),
-            "Values of an attribute at the two ends of `color_map`; what lies beyond has their colours.",
+            "Values of an attribute at the two ends of `color_map`, also the greater one first; what lies beyond \
+             has their colours.",
         ),
         key(
             "texture",

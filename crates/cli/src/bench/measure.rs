@@ -59,12 +59,13 @@ fn timed(
 ) -> Result<Row, Failure> {
     memory::require_picture(input.window(None)?, &[], 0)?;
     let started = Instant::now();
+    let mut input = input.clone();
     let sets = input.read_points(progress)?;
     let read = started.elapsed();
     go_on()?;
     let dropped = sets.iter().map(|set| set.dropped()).sum();
     let filtered_out = sets.iter().map(|set| set.filtered_out).sum();
-    let (plan, planned) = planned(case, input, &sets, runs, progress)?;
+    let (plan, planned) = planned(case, &input, &sets, runs, progress)?;
     drop(sets);
     let (mut built, builds, prepared) = build(engine, &plan, [runs, on_cpu], progress)?;
     let warm_up = built.built.frame(&plan, progress)?;

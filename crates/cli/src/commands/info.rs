@@ -5,13 +5,19 @@ use crate::commands::info_picture;
 use crate::console;
 use crate::errors::Failure;
 use crate::input::{self, Input, SceneValues};
+use crate::point_file::can_be_read_again;
 use crate::progress::Progress;
 use plan::Plan;
-use points::{PointSet, PointSummary, ReadOptions, Watch};
+use points::{Dimension, PointSet, PointSummary, ReadOptions, Wanted, Watch};
 use scene::{Light, Projection, Scene};
 use serde_json::{Value, json};
 use std::fmt::Write;
+use std::fs;
+use std::path::Path;
 use std::sync::Arc;
+
+/// Points that are held at once, about 80 bytes each, to see whether they fill a volume.
+const JUDGED: u64 = 2_000_000;
 
 /// Prints what is there.
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
@@ -36,12 +42,32 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         let options = ReadOptions { columns, ..ReadOptions::default() };
         let mut summary = points::summarize(&args.file, &options, &progress)?;
         progress.clear();
+        summary.dimension = dimension_of(&args.file, options, summary.points, &progress)?;
         summary.notes.extend(input::looks_like_degrees(&summary.units, 0));
         input::note_points(&args.file, &summary.notes, summary.dropped, summary.points, &progress);
         if args.json { pretty(&summary.to_json()) } else { format!("{summary}\n") }
     };
     drop(progress);
     console::result(&text)
+}
+
+/// What the points of a file fill, where it can be read once more and they are not too many to be held.
+fn dimension_of(
+    file: &Path,
+    options: ReadOptions,
+    points: u64,
+    progress: &Progress,
+) -> Result<Option<Dimension>, Failure> {
+    if points > JUDGED || !can_be_read_again(file) {
+        return Ok(None);
+    }
+    progress.stage("looking for volumes", fs::metadata(file).map_or(0, |file| file.len()));
+    let wanted = Wanted::Some { colors: false, normals: false, attributes: Vec::new() };
+    let options = ReadOptions { wanted, ..options };
+    let set = points::read_with(file, &options, &mut |done, _| progress.done(done))?;
+    let dimension = Dimension::of(&set);
+    progress.clear();
+    Ok(Some(dimension))
 }
 
 fn of_scene(args: &InfoArgs, progress: &Progress) -> Result<String, Failure> {
@@ -68,6 +94,7 @@ fn of_scene(args: &InfoArgs, progress: &Progress) -> Result<String, Failure> {
 fn summarize(set: &PointSet, progress: &Progress) -> PointSummary {
     progress.stage("measuring the spacing", 1);
     let mut summary = PointSummary::of(set);
+    summary.dimension = Some(Dimension::of(set));
     summary.notes.extend(input::looks_like_degrees(&summary.units, 0));
     progress.clear();
     summary

@@ -33,7 +33,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if let Some(columns) = &args.columns {
         values.add_columns(&args.scene, columns)?;
     }
-    let input = Input::load(&args.scene, &values, args.up)?;
+    let mut input = Input::load(&args.scene, &values, args.up)?.colored_by(args.color.clone())?;
     let diagnostics = diagnostics(args, &formats);
     memory::require_picture(input.window(args.crop)?, &formats, diagnostics.len())?;
     files::check_distinct(&outputs, &input.files())?;
@@ -53,7 +53,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if args.half && !formats.contains(&FileFormat::Exr) {
         progress.note("warning: --half is ignored, since it is for EXR files; add -o FILE.exr");
     }
-    with_engine(&args.device, |engine| render(args, &input, diagnostics, engine, &progress))
+    with_engine(&args.device, |engine| render(args, &mut input, diagnostics, engine, &progress))
 }
 
 /// The diagnostics that were asked for, each once, where a file can hold them.
@@ -64,7 +64,7 @@ fn diagnostics(args: &RenderArgs, formats: &[FileFormat]) -> Vec<Diagnostic> {
 
 fn render(
     args: &RenderArgs,
-    input: &Input,
+    input: &mut Input,
     diagnostics: Vec<Diagnostic>,
     engine: &Engine,
     progress: &Progress,

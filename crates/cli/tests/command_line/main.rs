@@ -19,6 +19,7 @@ mod render;
 mod signals;
 mod twins;
 mod usage;
+mod volumes;
 
 use std::ffi::OsStr;
 use std::fmt::Write;

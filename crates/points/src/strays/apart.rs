@@ -15,7 +15,7 @@ pub struct Apart {
     pub farthest: f64,
     /// The longest side of that box.
     pub size: f64,
-    /// Whether the points make a volume, and no surface.
+    /// Whether they are particles, of a volume or drawn one by one, and carry no surface.
     pub is_volume: bool,
     /// Whether those that lie near the others are drawn, small.
     pub is_drawn: bool,
@@ -46,8 +46,8 @@ impl fmt::Display for Apart {
             }
             true => write!(
                 f,
-                "; {they} {count_not} not count for the view; what lies farther off than the rest is wide is not in the \
-                 volume either"
+                "; {they} {count_not} not count for the view; what lies farther off than the rest is wide is not \
+                 drawn either"
             )?,
         }
         match filter {
@@ -131,7 +131,7 @@ mod tests {
         assert_eq!(
             volume.to_string(),
             "1 of 501 points lies far from all others, up to 590 outside the rest, which is 2.00 wide; it does not \
-             count for the view; what lies farther off than the rest is wide is not in the volume either; F leaves out what lies outside"
+             count for the view; what lies farther off than the rest is wide is not drawn either; F leaves out what lies outside"
         );
         let inside = Apart { count: 3, farthest: 0.0, filter: None, ..one };
         assert_eq!(

@@ -224,6 +224,7 @@ impl Second {
             attributes: self.columns.finish(),
             coincident,
             coincident_counted,
+            dimension: None,
             spacing,
             spacing_sample: spacing_sample.flatten(),
             notes: set.notes.clone(),

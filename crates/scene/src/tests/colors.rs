@@ -34,7 +34,6 @@ fn colors_that_exclude_each_other_are_errors() {
             &["objects.0.material.albedo=points", "objects.0.material.value_range=[0, 1]"],
             "objects[0].material.value_range: belongs to the albedo of an attribute",
         ),
-        (&["objects.0.material.value_range=[1, 1]"], "the second greater; raise the second"),
         (&["objects.0.material.value_range=[1]"], "expected two numbers"),
         (&["objects.0.material.albedo=attribute:"], "found the string \"attribute:\", expected"),
         (&["objects.0.material.albedo=attribut:z"], "\"attribute:\" and the name of an attribute"),
