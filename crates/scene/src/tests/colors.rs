@@ -16,7 +16,7 @@ fn attributes_have_a_map_and_their_own_range_if_none_is_given() {
 
 #[test]
 fn colors_that_exclude_each_other_are_errors() {
-    let cases: [(&[&str], &str); 10] = [
+    let cases: [(&[&str], &str); 9] = [
         (
             &["objects.0.material.albedo=[1, 1, 1]", "objects.0.material.texture=a.png"],
             "objects[0].material.texture: found both albedo and texture",
