@@ -150,15 +150,21 @@ fn warn_of_bright_values(film: &Film, progress: &Progress) {
 fn warn_of_missing_surfaces(plan: &Plan, built: &Built, progress: &Progress) {
     let mut volumes =
         (0u32..).map(|object| plan.volumes.infos.iter().any(|volume| volume.object == object));
-    for (slots, name) in plan.cloud.objects.iter().zip(&plan.names) {
+    for (index, (slots, name)) in (0u32..).zip(plan.cloud.objects.iter().zip(&plan.names)) {
         let outcomes = &built.outcomes()[slots.range()];
         if volumes.next().is_some_and(|is_volume| is_volume) {
             continue;
         }
         if outcomes.iter().all(|outcome| outcome.trust <= 0.0) {
+            let why = match plan.shapes.iter().any(|shapes| shapes.object == index) {
+                true => "has a radius over 1e-15; give surface.radius a length",
+                false => {
+                    "carries a surface, since points without distinct neighbours have none; it renders as \
+                     background"
+                }
+            };
             progress.note(&format!(
-                "warning: object '{name}': none of its {} points carries a surface, since points \
-                 without distinct neighbours have none; it renders as background",
+                "warning: object '{name}': none of its {} points {why}",
                 outcomes.len()
             ));
         }

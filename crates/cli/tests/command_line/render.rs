@@ -127,6 +127,28 @@ fn channels_add_diagnostics_and_change_nothing_else() {
     assert!((sum - counted).abs() < 1e-6 * counted, "{sum} against {counted}");
 }
 
+/// Spheres and discs are counted, shown as such, and reported where none has a radius.
+#[test]
+fn points_are_drawn_as_spheres_and_discs() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(500));
+    for (kind, shown) in [("sphere", 5.0), ("disc", 4.0)] {
+        let set = format!("objects.0.surface.kind={kind}s");
+        let outputs = ["ball.ply", "-o", "a.exr", "--stats", "a.json", "--channels", "fit"];
+        let ran = render(&folder, &[&outputs[..], &["--set", &set]].concat()).succeeds();
+        assert_eq!(ran.stderr, "");
+        let row = json(&folder.path().join("a.json"));
+        assert_eq!((&row["fits"][kind], &row["fits"]["full"]), (&500.into(), &0.into()));
+        let channels = film::read_exr(&folder.path().join("a.exr")).expect("an EXR").channels;
+        let fits = &channels["fit"];
+        assert!(fits.contains(&shown) && fits.iter().all(|fit| [shown, -1.0].contains(fit)));
+    }
+    folder.write("one.ply", &sphere(1));
+    let spheres = ["one.ply", "-o", "a.png", "--set", "objects.0.surface.kind=spheres"];
+    let ran = render(&folder, &spheres).succeeds();
+    assert!(ran.stderr.contains("none of its 1 points has a radius over 1e-15"), "{}", ran.stderr);
+}
+
 /// Nobody is told twice, and a picture is the same to the byte.
 #[test]
 fn channels_without_an_exr_are_a_warning() {
