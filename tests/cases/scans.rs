@@ -88,31 +88,26 @@ fn check(scanner: Scanner) {
 }
 
 #[test]
-#[ignore = "surfaces do not follow the noise yet"]
 fn a_laser_scan_of_little_noise_is_shown_as_it_is() {
     check(Scanner::Laser1);
 }
 
 #[test]
-#[ignore = "surfaces do not follow the noise yet"]
 fn a_laser_scan_of_some_noise_is_shown_as_it_is() {
     check(Scanner::Laser3);
 }
 
 #[test]
-#[ignore = "surfaces do not follow the noise yet"]
 fn a_laser_scan_of_much_noise_is_shown_as_it_is() {
     check(Scanner::Laser10);
 }
 
 #[test]
-#[ignore = "surfaces do not follow the noise yet"]
 fn photogrammetry_is_shown_as_it_is() {
     check(Scanner::Photo);
 }
 
 #[test]
-#[ignore = "surfaces do not follow the noise yet"]
 fn a_depth_image_is_shown_as_it_is() {
     check(Scanner::Depth);
 }

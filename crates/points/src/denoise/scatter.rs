@@ -16,6 +16,11 @@ const ASKED: usize = 64;
 /// A point is scatter where its residual and its spacing are over so many times the medians of those.
 const NOISIER: f32 = 4.0;
 const SPARSER: f32 = 2.0;
+/// Or, where its spacing is over so many times their median, by less: its residual is over so many times theirs, or over
+/// this share of h. Mixed pixels beside an edge are a sheet, but a thick and sparse one.
+const SPARSE: f32 = 2.5;
+const NOISY: f32 = 1.5;
+const THICK: f32 = 0.15;
 
 /// Which points are scatter by their fits. `squares`: h16².
 pub(super) fn by_fits(near: &Near<'_>, scales: &Scales, squares: &[f32]) -> Vec<bool> {
@@ -43,7 +48,9 @@ pub(super) fn by_fits(near: &Near<'_>, scales: &Scales, squares: &[f32]) -> Vec<
             *is_scatter = scales.fills_space[at]
                 || fit.s > BLOB * fit.h
                 || off > FAR_OFF * fit.s
-                || (fit.s > NOISIER * s && squares[at] > SPARSER * SPARSER * square);
+                || (fit.s > NOISIER * s && squares[at] > SPARSER * SPARSER * square)
+                || ((fit.s > NOISY * s || fit.s > THICK * fit.h)
+                    && squares[at] > SPARSE * SPARSE * square);
         }
     });
     is_scatter
