@@ -124,7 +124,8 @@ pub(crate) fn denoise(
     }
     let mut smoothed = Smoothed::default();
     for own in noisy {
-        let (shapes, found) = own.smooth(&scene.objects[own.index], cloud, watch)?;
+        let (shapes, found) =
+            own.smooth(&scene.objects[own.index], &sets[own.index], cloud, watch)?;
         smoothed.shapes.extend(shapes);
         smoothed.found.push(found);
     }
@@ -146,12 +147,32 @@ struct Noisy {
 }
 
 impl Noisy {
+    /// Where each point was seen from, by its place among the object's slots; empty where no sensor is known.
+    fn sensors(&self, object: &Object, set: &PointSet, cloud: &Cloud) -> Vec<Option<[f32; 3]>> {
+        if set.sensors.is_empty() {
+            return Vec::new();
+        }
+        let range = cloud.objects[self.index].range();
+        let mut sensors = vec![None; range.len()];
+        for place in (0..set.len()).filter(|&place| cloud.counts(self.index, place)) {
+            let local = |sensor: [f64; 3]| {
+                let world = object.transform.apply(sensor);
+                [0, 1, 2].map(|axis| (world[axis] - cloud.origin[axis]) as f32)
+            };
+            let slot = cloud.slot(self.index, place) as usize - range.start;
+            sensors[slot] = set.sensor_of(place).map(local);
+        }
+        sensors
+    }
+
     fn smooth(
         &self,
         object: &Object,
+        set: &PointSet,
         cloud: &mut Cloud,
         watch: &dyn Watch,
     ) -> Result<(Option<Shapes>, Denoising), PlanError> {
+        let seen_from = self.sensors(object, set, cloud);
         let range = cloud.objects[self.index].range();
         let mut is_left = vec![true; range.len()];
         for place in (0..self.is_stray.len()).filter(|&place| self.is_stray[place]) {
@@ -160,8 +181,12 @@ impl Noisy {
         let own = &mut cloud.points[range.clone()];
         let left: Vec<usize> = (0..own.len()).filter(|&at| is_left[at]).collect();
         let points: Vec<_> = left.iter().map(|&at| own[at]).collect();
-        let denoised =
-            Denoised::of(&points, &self.smoothing, watch).ok_or(PlanError::Interrupted)?;
+        let sensors: Vec<_> = match seen_from.is_empty() {
+            true => Vec::new(),
+            false => left.iter().map(|&at| seen_from[at]).collect(),
+        };
+        let denoised = Denoised::of(&points, &sensors, &self.smoothing, watch)
+            .ok_or(PlanError::Interrupted)?;
         // Strays are as large as the others are at most, and look anywhere.
         let mut is_scatter = vec![true; own.len()];
         let mut spacings = vec![denoised.spacing; own.len()];

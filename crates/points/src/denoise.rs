@@ -16,10 +16,12 @@ mod fit;
 mod judge;
 mod lanes;
 mod near;
+mod report;
 mod scales;
 mod scatter;
 
 pub use judge::Noise;
+pub use report::NoiseReport;
 
 use crate::watch::Watch;
 use bilateral::Oriented;
@@ -58,7 +60,8 @@ pub struct Smoothing {
 pub struct Denoised {
     /// Where each lies; what is scatter lies where it did.
     pub positions: Vec<[f32; 3]>,
-    /// Its normal, of unit length, to either side; zero of what is far from others.
+    /// Its normal, of unit length, towards the sensor where that is known, else to either side; zero of what is far from
+    /// others.
     pub normals: Vec<[f32; 3]>,
     /// Which points are no samples of a surface.
     pub is_scatter: Vec<bool>,
@@ -72,9 +75,15 @@ pub struct Denoised {
 
 impl Denoised {
     /// Smooths distinct points along a curve ([`Cloud`](crate::Cloud)), without strays. Few points, or points in one
-    /// place, stay as they are. `None` where the watcher asks for an end.
+    /// place, stay as they are. `sensors` are where each was seen from, in the same coordinates, as far as that is known:
+    /// one entry a point, or none at all. `None` where the watcher asks for an end.
     #[must_use]
-    pub fn of(points: &[Point], smoothing: &Smoothing, watch: &dyn Watch) -> Option<Self> {
+    pub fn of(
+        points: &[Point],
+        sensors: &[Option<[f32; 3]>],
+        smoothing: &Smoothing,
+        watch: &dyn Watch,
+    ) -> Option<Self> {
         let count = points.len() as u64;
         watch.stage("smoothing noise", count);
         let step = |step: u64| {
@@ -131,7 +140,16 @@ impl Denoised {
         let on_fit = |&at: &u32| {
             let (fit, p) = (&scales.fits[at as usize], kept[at as usize]);
             let position = [0, 1, 2].map(|axis| p[axis] + fit.foot[axis]);
-            Oriented { position, normal: fit.normal, error: fit.error }
+            let mut oriented =
+                Oriented { position, normal: fit.normal, error: fit.error, is_seen: false };
+            if let Some(Some(sensor)) = sensors.get(left[at as usize] as usize) {
+                let towards = (0..3).map(|axis| (sensor[axis] - p[axis]) * fit.normal[axis]);
+                if towards.sum::<f32>() < 0.0 {
+                    oriented.normal = fit.normal.map(|x| -x);
+                }
+                oriented.is_seen = true;
+            }
+            oriented
         };
         let mut oriented: Vec<Oriented> = places.iter().map(on_fit).collect();
         for round in 1..=bilateral::ROUNDS as u64 {

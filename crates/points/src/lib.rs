@@ -59,7 +59,7 @@ mod watch;
 
 pub use assign::{Column, Columns};
 pub use cloud::{Cloud, CloudError, FARTHEST, ObjectPoints, SlotRange, bounds_of, origin_of};
-pub use denoise::{Denoised, Noise, Smoothing};
+pub use denoise::{Denoised, Noise, NoiseReport, Smoothing};
 pub use dimension::{Dimension, Sign};
 pub use error::PointsError;
 pub use filter::Filter;

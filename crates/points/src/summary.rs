@@ -9,6 +9,7 @@ pub use histogram::{Histogram, Range};
 pub use passes::summarize;
 
 use crate::cloud::origin_of;
+use crate::denoise::NoiseReport;
 use crate::dimension::Dimension;
 use crate::strays::Apart;
 use crate::units::Units;
@@ -52,6 +53,8 @@ pub struct PointSummary {
     pub units: Units,
     /// What the points fill; `None` where nobody has [looked](Dimension::of), which takes all points at once.
     pub dimension: Option<Dimension>,
+    /// The noise of points on surfaces; `None` where nobody has looked, or there are too few.
+    pub noise: Option<NoiseReport>,
 }
 
 /// How many points were dropped, and why.
@@ -118,6 +121,7 @@ impl PointSummary {
                 Units::Degrees(_) => "degrees",
                 Units::Lengths | Units::LikeDegrees => "lengths",
             },
+            "noise": self.noise.map(|noise| noise.to_json()),
             "shape": self.dimension.map(|dimension| json!({
                 "volume": dimension.is_volume(),
                 "sign": match dimension {
@@ -178,6 +182,9 @@ impl fmt::Display for PointSummary {
         }
         if let Some(dimension) = &self.dimension {
             write!(f, "\nshape    {dimension}")?;
+        }
+        if let Some(noise) = &self.noise {
+            write!(f, "\nnoise    {noise}")?;
         }
         if self.attributes.is_empty() {
             return Ok(());

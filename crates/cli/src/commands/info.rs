@@ -8,7 +8,7 @@ use crate::input::{self, Input, SceneValues};
 use crate::point_file::can_be_read_again;
 use crate::progress::Progress;
 use plan::Plan;
-use points::{Dimension, PointSet, PointSummary, ReadOptions, Wanted, Watch};
+use points::{Dimension, NoiseReport, PointSet, PointSummary, ReadOptions, Wanted, Watch};
 use scene::{Light, Projection, Scene};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -16,7 +16,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Points that are held at once, about 80 bytes each, to see whether they fill a volume.
+/// Points that are held at once, about 80 bytes each, to see whether they fill a volume, and what noise they have.
 const JUDGED: u64 = 2_000_000;
 
 /// Prints what is there.
@@ -42,7 +42,9 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         let options = ReadOptions { columns, ..ReadOptions::default() };
         let mut summary = points::summarize(&args.file, &options, &progress)?;
         progress.clear();
-        summary.dimension = dimension_of(&args.file, options, summary.points, &progress)?;
+        if let Some(set) = held_set(&args.file, options, summary.points, &progress)? {
+            judge(&mut summary, &set, &progress);
+        }
         summary.notes.extend(input::looks_like_degrees(&summary.units, 0));
         input::note_points(&args.file, &summary.notes, summary.dropped, summary.points, &progress);
         if args.json { pretty(&summary.to_json()) } else { format!("{summary}\n") }
@@ -51,13 +53,13 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     console::result(&text)
 }
 
-/// What the points of a file fill, where it can be read once more and they are not too many to be held.
-fn dimension_of(
+/// The points of a file, where it can be read once more and they are not too many to be held.
+fn held_set(
     file: &Path,
     options: ReadOptions,
     points: u64,
     progress: &Progress,
-) -> Result<Option<Dimension>, Failure> {
+) -> Result<Option<PointSet>, Failure> {
     if points > JUDGED || !can_be_read_again(file) {
         return Ok(None);
     }
@@ -65,9 +67,16 @@ fn dimension_of(
     let wanted = Wanted::Some { colors: false, normals: false, attributes: Vec::new() };
     let options = ReadOptions { wanted, ..options };
     let set = points::read_with(file, &options, &mut |done, _| progress.done(done))?;
-    let dimension = Dimension::of(&set);
+    Ok(Some(set))
+}
+
+/// What points fill, and what noise those of surfaces have.
+fn judge(summary: &mut PointSummary, set: &PointSet, progress: &Progress) {
+    let dimension = Dimension::of(set);
+    progress.stage("measuring noise", 1);
+    summary.noise = if dimension.is_volume() { None } else { NoiseReport::of(set) };
+    summary.dimension = Some(dimension);
     progress.clear();
-    Ok(Some(dimension))
 }
 
 fn of_scene(args: &InfoArgs, progress: &Progress) -> Result<String, Failure> {
@@ -94,7 +103,7 @@ fn of_scene(args: &InfoArgs, progress: &Progress) -> Result<String, Failure> {
 fn summarize(set: &PointSet, progress: &Progress) -> PointSummary {
     progress.stage("measuring the spacing", 1);
     let mut summary = PointSummary::of(set);
-    summary.dimension = Some(Dimension::of(set));
+    judge(&mut summary, set, progress);
     summary.notes.extend(input::looks_like_degrees(&summary.units, 0));
     progress.clear();
     summary

@@ -23,6 +23,17 @@ pub(super) struct Oriented {
     pub normal: [f32; 3],
     /// The expected error of the normal, in radians.
     pub error: f32,
+    /// Whether the normal looks at the sensor that saw the point: then the other side of a thin thing is another surface.
+    pub is_seen: bool,
+}
+
+impl Oriented {
+    /// The cosine between normals, where each may look to either side; or, where both look at their sensors, as it is.
+    fn cosine_to(&self, other: &Self, normal: [f32; 3]) -> [f32; 2] {
+        let cosine = dot(other.normal, normal);
+        let sign = if self.is_seen && other.is_seen { 1.0 } else { 1f32.copysign(cosine) };
+        [cosine * sign, sign]
+    }
 }
 
 /// 1 - cos(a) for a up to [`MOST`], within 1e-7.
@@ -70,12 +81,12 @@ fn filtered_point(points: &[Oriented], at: usize, farthest: f32, scratch: &Scrat
     };
     let weight = |other: &Oriented, away: f32, cosine: f32| {
         let angle = (ERRORS * other.error.min(own.error)).clamp(LEAST, MOST);
-        exp_negative(-away - (1.0 - cosine.abs()).max(0.0) / one_minus_cosine(angle))
+        exp_negative(-away - (1.0 - cosine).max(0.0) / one_minus_cosine(angle))
     };
     let mut sum = [0.0; 3];
     for (other, away) in others() {
-        let cosine = dot(other.normal, own.normal);
-        let weight = weight(other, away, cosine).copysign(cosine);
+        let [cosine, sign] = own.cosine_to(other, own.normal);
+        let weight = weight(other, away, cosine) * sign;
         sum = [0, 1, 2].map(|axis| sum[axis] + weight * other.normal[axis]);
     }
     let length = dot(sum, sum).sqrt();
@@ -85,13 +96,13 @@ fn filtered_point(points: &[Oriented], at: usize, farthest: f32, scratch: &Scrat
     let normal = sum.map(|x| x / length);
     let (mut total, mut height) = (0.0, 0.0);
     for (other, away) in others() {
-        let cosine = dot(other.normal, normal);
+        let [cosine, sign] = own.cosine_to(other, normal);
         let weight = weight(other, away, cosine);
         let way = [0, 1, 2].map(|axis| other.position[axis] - own.position[axis]);
         total += weight;
-        height += weight * dot(way, other.normal) * 1f32.copysign(cosine);
+        height += weight * dot(way, other.normal) * sign;
     }
     let height = height / total;
     let position = [0, 1, 2].map(|axis| own.position[axis] + height * normal[axis]);
-    Oriented { position, normal, error: own.error }
+    Oriented { position, normal, ..own }
 }

@@ -340,6 +340,35 @@ impl Worker {
         }
     }
 
+    /// The distance of one point to its k-th nearest other; `None` where there are fewer.
+    pub fn reach(&mut self, near: &Near<'_>, at: usize, k: usize) -> Option<f32> {
+        let bound = near.bound(at, k, &mut self.scratch)?.sqrt();
+        near.gather_around(near.points[at], bound, &mut self.scratch);
+        Some(near.select(at, k, bound, &mut self.scratch)?.sqrt())
+    }
+
+    /// The others within a distance of the point that was asked about last.
+    pub fn others(&self, at: usize, reach: f32) -> Vec<usize> {
+        let within = self.scratch.within(reach * reach * (1.0 + 1e-6));
+        let places = within.map(|(entry, _)| self.scratch.places[entry] as usize);
+        places.filter(|&place| place != at).collect()
+    }
+
+    /// The fit of one point at its own level.
+    pub fn fit_of(&mut self, near: &Near<'_>, at: usize, smoothing: &Smoothing) -> Fit {
+        let mut climb = Climb::new(0.0);
+        for (level, &k) in LEVELS.iter().enumerate() {
+            if climb.done {
+                break;
+            }
+            match self.fit_alone(near, at, k) {
+                Some(fit) => climb.judge(level, fit, smoothing),
+                None => break,
+            }
+        }
+        climb.result()
+    }
+
     /// The fit of one point to its k nearest others; `None` where there are fewer.
     pub fn fit_alone(&mut self, near: &Near<'_>, at: usize, k: usize) -> Option<Fit> {
         let bound = near.bound(at, k, &mut self.scratch)?;

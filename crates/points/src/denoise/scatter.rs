@@ -1,6 +1,7 @@
 //! What is no surface: strays, mixed pixels, and neighbourhoods that no surface goes through.
 
 use super::FAN;
+use super::fit::Fit;
 use super::near::{Near, Scratch};
 use super::scales::Scales;
 use rayon::prelude::*;
@@ -43,17 +44,20 @@ pub(super) fn by_fits(near: &Near<'_>, scales: &Scales, squares: &[f32]) -> Vec<
             places.start / EVERY,
         );
         for (at, is_scatter) in places.zip(is_scatter) {
-            let fit = &fits[at];
-            let off = fit.foot.iter().map(|x| x * x).sum::<f32>().sqrt();
-            *is_scatter = scales.fills_space[at]
-                || fit.s > BLOB * fit.h
-                || off > FAR_OFF * fit.s
-                || (fit.s > NOISIER * s && squares[at] > SPARSER * SPARSER * square)
-                || ((fit.s > NOISY * s || fit.s > THICK * fit.h)
-                    && squares[at] > SPARSE * SPARSE * square);
+            *is_scatter = scales.fills_space[at] || by_fit(&fits[at], squares[at], [s, square]);
         }
     });
     is_scatter
+}
+
+/// Whether a point is scatter by its fit and h16², with the medians of residuals and h16² around.
+pub(super) fn by_fit(fit: &Fit, square: f32, [s_around, square_around]: [f32; 2]) -> bool {
+    let off = fit.foot.iter().map(|x| x * x).sum::<f32>().sqrt();
+    fit.s > BLOB * fit.h
+        || off > FAR_OFF * fit.s
+        || (fit.s > NOISIER * s_around && square > SPARSER * SPARSER * square_around)
+        || ((fit.s > NOISY * s_around || fit.s > THICK * fit.h)
+            && square > SPARSE * SPARSE * square_around)
 }
 
 #[derive(Default)]

@@ -55,7 +55,7 @@ fn positions_of(points: &[Point]) -> Vec<[f32; 3]> {
 const SMOOTHING: Smoothing = Smoothing { accuracy: 2.5 * DEGREE, agreed: false };
 
 fn denoised(points: &[Point]) -> Denoised {
-    Denoised::of(points, &SMOOTHING, &Unwatched).expect("nobody asks for an end")
+    Denoised::of(points, &[], &SMOOTHING, &Unwatched).expect("nobody asks for an end")
 }
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {
@@ -136,6 +136,34 @@ fn an_edge_stays_an_edge() {
     assert!(missing < 2 * count / 100, "{missing} points are scatter");
 }
 
+/// Two sides of a plate, scanned from above and from below.
+#[test]
+fn normals_look_at_the_sensors_on_both_sides_of_a_thin_plate() {
+    let (mut random, thickness, sigma) = (Random(11), 0.03, 0.003);
+    let positions: Vec<[f64; 3]> = (0..40_000)
+        .map(|i| {
+            let (x, y, off) = (random.uniform(), random.uniform(), sigma * random.normal());
+            [x, y, f64::from(i % 2) * thickness + off]
+        })
+        .collect();
+    let points = cloud(&positions);
+    let is_upper = |point: &Point| point.index % 2 == 1;
+    let sensors: Vec<Option<[f32; 3]>> =
+        points.iter().map(|p| Some([0.5, 0.5, if is_upper(p) { 3.0 } else { -3.0 }])).collect();
+    let off = |denoised: &Denoised| {
+        let side = |point: &Point| if is_upper(point) { thickness } else { 0.0 };
+        let each = points.iter().zip(&denoised.positions).zip(&denoised.is_scatter);
+        let left = each.filter(|(_, scatter)| !**scatter);
+        rms(left.map(|((point, p), _)| f64::from(p[2]) - side(point)))
+    };
+    let seen = Denoised::of(&points, &sensors, &SMOOTHING, &Unwatched).expect("no end");
+    let (with, without) = (off(&seen), off(&denoised(&points)));
+    assert!(with < 0.5 * without, "{with} with sensors, {without} without");
+    let looks = |(point, normal): (&Point, &[f32; 3])| (normal[2] > 0.0) == is_upper(point);
+    let looking = points.iter().zip(&seen.normals).filter(|&pair| looks(pair)).count();
+    assert!(looking * 100 > 97 * points.len(), "{looking} of {}", points.len());
+}
+
 #[test]
 fn strays_around_a_plane_are_scatter() {
     let mut random = Random(4);
@@ -196,7 +224,7 @@ fn few_points_and_an_end_that_is_asked_for() {
         }
     }
     let points = cloud(&plane(3_000, 0.01, &mut Random(7)));
-    assert_eq!(Denoised::of(&points, &SMOOTHING, &Impatient), None);
+    assert_eq!(Denoised::of(&points, &[], &SMOOTHING, &Impatient), None);
     for count in [0, 1, 2, 16, 17, 18, 24, 25, 40, 300] {
         let few = denoised(&points[..count]);
         assert_eq!(few.positions.len(), count);
@@ -228,6 +256,26 @@ fn noise_is_told_from_none() {
         })
         .collect();
     assert_eq!(noise(&sphere), Noise::Clean);
+}
+
+#[test]
+fn a_report_has_the_noise_and_what_is_done_about_it() {
+    let mut random = Random(10);
+    let mut positions = plane(20_000, 0.004, &mut random);
+    positions.extend((0..400).map(|_| [0; 3].map(|_| 2.0 * random.uniform() - 0.5)));
+    positions.extend([[9.0; 3], [11.0; 3]]);
+    let set = crate::PointSet {
+        file_index: (0..positions.len() as u32).collect(),
+        positions,
+        ..crate::PointSet::default()
+    };
+    let report = NoiseReport::of(&set).expect("enough points");
+    assert_eq!(report.noise, Noise::Random);
+    assert!((0.8..1.1).contains(&(report.sigma / 0.004)), "{report:?}");
+    assert!((0.9..1.2).contains(&(report.spacing / 0.0079)), "{report:?}");
+    assert!((0.008..0.03).contains(&report.scatter) && report.strays >= 2, "{report:?}");
+    assert!(report.to_string().ends_with("neighbors = \"auto\" smooths it"), "{report}");
+    assert_eq!(NoiseReport::of(&crate::PointSet::default()), None);
 }
 
 /// A wall before a camera at the origin, aslant, whose depths are in steps of five spacings.

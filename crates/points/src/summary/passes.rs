@@ -225,6 +225,7 @@ impl Second {
             coincident,
             coincident_counted,
             dimension: None,
+            noise: None,
             spacing,
             spacing_sample: spacing_sample.flatten(),
             notes: set.notes.clone(),
