@@ -5,7 +5,7 @@ use crate::errors::Failure;
 use crate::memory;
 use crate::point_file::{ColorBy, PointFile};
 use crate::progress::Progress;
-use plan::{MapProjection, Plan, SceneImages, Window};
+use plan::{MapProjection, Plan, SceneImages, SensorView, Window};
 use points::{Column, Columns, Dropped, PointSet, ReadOptions, Upwards, Wanted, Watch};
 use scene::{Albedo, ImageFile, Object, Scene, Units, Up};
 use serde_json::json;
@@ -189,6 +189,14 @@ impl Input {
         sets: &[Arc<PointSet>],
         progress: &Progress,
     ) -> Result<(Cow<'_, Scene>, Up), Failure> {
+        let open = self.point_file.as_ref().filter(|point_file| point_file.up_is_open);
+        if let (Some(point_file), Some(view)) = (open, plan::sensor_view(&self.scene, sets)) {
+            self.note_sensor(&view, progress);
+            let values = &point_file.values;
+            let lights = Scene::for_sensor(&self.path, &view.camera, view.axes, values)?.lights;
+            let camera = Some(view.camera);
+            return Ok((Cow::Owned(Scene { lights, camera, ..self.scene.clone() }), self.up));
+        }
         let (Some(point_file), Some((up, why))) = (&self.point_file, self.found_up(sets)) else {
             return Ok((Cow::Borrowed(&self.scene), self.up));
         };
@@ -204,6 +212,17 @@ impl Input {
         }
         let lights = Scene::for_point_file(&self.path, turned, &point_file.values)?.lights;
         Ok((Cow::Owned(Scene { lights, ..self.scene.clone() }), turned))
+    }
+
+    /// Says that the view is the sensor's, and how there is another.
+    fn note_sensor(&self, view: &SensorView, progress: &Progress) {
+        let [x, y, z] = view.camera.eye;
+        let [across, above] = view.angles;
+        progress.note(&format!(
+            "{}: one depth image, seen from where its sensor stood, {x} {y} {z}, {across:.0} by {above:.0} degrees; \
+             --up y, --up z or --up -y shows it from outside",
+            self.path.display()
+        ));
     }
 
     /// Every file that the picture is made from.

@@ -8,7 +8,7 @@
 
 use crate::PlanError;
 use geographiclib_rs::{Geodesic, InverseGeodesic};
-use points::{PointSet, Units, Watch};
+use points::{PointSet, Sensor, Units, Watch};
 use rayon::prelude::*;
 use scene::{Object, Scene};
 use std::fmt;
@@ -70,10 +70,7 @@ pub(crate) fn projected(
         let known = asked[..n].iter().find(|&&earlier| Arc::ptr_eq(&sets[earlier], &sets[i]));
         out[i] = match known {
             Some(&earlier) => Arc::clone(&out[earlier]),
-            None => Arc::new(PointSet {
-                positions: projection.all(&sets[i].positions),
-                ..PointSet::clone(&sets[i])
-            }),
+            None => Arc::new(projection.whole(&sets[i])),
         };
     }
     Ok((out, Some(projection)))
@@ -152,6 +149,21 @@ impl MapProjection {
             geodesic.inverse(latitude, longitude, y, x);
         let (east, north) = azimuth.to_radians().sin_cos();
         [distance * east, distance * north, z]
+    }
+
+    /// A set with its sensors.
+    fn whole(&self, set: &PointSet) -> PointSet {
+        let geodesic = Geodesic::wgs84();
+        let moved = |sensor: &Sensor| {
+            let position = self.apply(&geodesic, sensor.position);
+            Sensor { position, ..sensor.clone() }
+        };
+        let sensors = set.sensors.iter().filter(|sensor| is_place(&sensor.position));
+        PointSet {
+            positions: self.all(&set.positions),
+            sensors: sensors.map(moved).collect(),
+            ..set.clone()
+        }
     }
 
     /// The same of many.

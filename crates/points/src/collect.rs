@@ -272,6 +272,17 @@ impl<'a> Collector<'a> {
         }
     }
 
+    /// The position that a row has.
+    pub(crate) fn position_of(&self, row: &[f64]) -> [f64; 3] {
+        self.position.map(|place| row[place])
+    }
+
+    /// Points of the file that came so far: the place in the file of the next one.
+    pub(crate) fn seen(&self) -> u32 {
+        let set = &self.set;
+        (self.kept() + set.non_finite + set.invalid + set.filtered_out) as u32
+    }
+
     /// Points of the file that were kept.
     pub(crate) fn kept(&self) -> u64 {
         let voxels = self.voxels.as_ref().map_or(0, |(voxels, _)| voxels.len());

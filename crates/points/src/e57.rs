@@ -20,6 +20,7 @@ use crate::e57::prototype::Layout;
 use crate::e57::xml::Scan;
 use crate::error::PointsError;
 use crate::options::ReadOptions;
+use crate::sensor::{self, Pixels};
 use crate::set::PointSet;
 use crate::source::Source;
 use std::io;
@@ -103,15 +104,25 @@ pub(crate) fn read(
     let bits = pages.length().saturating_mul(8);
     let fits = |scan: &Scan| scan.count.min(bits / scan.record_bits().max(1));
     collector.expect(scans.iter().map(fits).fold(0, u64::saturating_add))?;
+    let mut taken = Vec::new();
     for (index, scan) in scans.iter().enumerate() {
+        let before = collector.seen();
         let mut reader = Reader::new(index, scan, &layout);
         reader.read(&mut pages, path, &mut collector)?;
+        taken.push(sensor::Scan {
+            pose: scan.pose,
+            is_posed: scan.is_posed,
+            has_angles: layout.has_angles(index),
+            pixels: reader.pixels.map(|(pixels, _)| pixels),
+            points: before..collector.seen(),
+        });
     }
     let of_scans = match scans.len() {
         1 => String::new(),
         count => format!(", {count} scans"),
     };
-    collector.finish(&format!("E57 {}{of_scans}", pages.version()))
+    let set = collector.finish(&format!("E57 {}{of_scans}", pages.version()))?;
+    Ok(PointSet { sensors: sensor::of_scans(&taken), ..set })
 }
 
 /// Reads one scan.
@@ -120,6 +131,8 @@ struct Reader<'a> {
     scan: &'a Scan,
     layout: &'a Layout,
     streams: Vec<Stream>,
+    /// Of a scan with columns and rows, with the places of these among its numbers.
+    pixels: Option<(Pixels, [usize; 2])>,
     /// Logical place behind the last packet.
     end: u64,
     done: u64,
@@ -128,7 +141,9 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     fn new(index: usize, scan: &'a Scan, layout: &'a Layout) -> Self {
         let streams = scan.columns.iter().map(|column| Stream::new(column.codec.bits()));
-        Self { index, scan, layout, streams: streams.collect(), end: 0, done: 0 }
+        let pixels = scan.find("columnIndex").zip(scan.find("rowIndex"));
+        let pixels = pixels.map(|(column, row)| (Pixels::new(scan.count), [column, row]));
+        Self { index, scan, layout, streams: streams.collect(), pixels, end: 0, done: 0 }
     }
 
     fn read(
@@ -237,7 +252,13 @@ impl<'a> Reader<'a> {
                 *value = column.codec.value(stream.next());
             }
             match self.layout.fill(self.index, self.scan, &values, &mut row) {
-                true => collector.push(&row)?,
+                true => {
+                    if let Some((pixels, places)) = &mut self.pixels {
+                        let pixel = places.map(|place| values[place]);
+                        pixels.see(pixel, collector.position_of(&row));
+                    }
+                    collector.push(&row)?;
+                }
                 false => collector.push_invalid()?,
             }
             self.done += 1;

@@ -2,7 +2,8 @@
 //!
 //! Organised clouds are read like others: their points without a measurement are NaN, and so are
 //! dropped and counted. Coordinates stay as they are in the file: its VIEWPOINT says where the
-//! sensor was, which is no transform of the points. A field with COUNT n gives n numbers, `name_0` to
+//! sensor was, which is no transform of the points. Programs disagree about that: where rows and columns
+//! show that points are in the sensor's own coordinates, it was in the origin. A field with COUNT n gives n numbers, `name_0` to
 //! `name_n-1`. Colours are in fields `rgb` or `rgba`, the bytes of a 32-bit number whatever its type.
 
 mod header;
@@ -13,6 +14,7 @@ use crate::error::{PointsError, Quoted};
 use crate::field::{Field, Type};
 use crate::options::ReadOptions;
 use crate::pcd::header::{Data, Header};
+use crate::sensor::{CAMERA, Pixels, Pose, Sensor};
 use crate::set::PointSet;
 use crate::source::{Line, Source};
 use crate::upright::{self, Upwards};
@@ -36,11 +38,13 @@ pub(crate) fn read(
     let header = header::read(&mut source, path)?;
     let mut collector = Collector::new(&header.fields(), path, options)?;
     collector.expect(source.records(header.points, header.least_record()))?;
+    let mut image = Image::new(&header, &mut collector);
     match header.data {
-        Data::Ascii => text(&mut source, &header, path, &mut collector)?,
-        Data::Binary => binary(&mut source, &header, path, &mut collector)?,
-        Data::Compressed => compressed(&mut source, &header, path, &mut collector)?,
+        Data::Ascii => text(&mut source, &header, path, &mut image)?,
+        Data::Binary => binary(&mut source, &header, path, &mut image)?,
+        Data::Compressed => compressed(&mut source, &header, path, &mut image)?,
     }
+    let sensors = image.sensor(&header).into_iter().collect();
     let organised = if header.rows > 1 { ", organised" } else { "" };
     let words = header.data.in_words();
     let mut set = collector.finish(&format!("PCD {}, {words}{organised}", header.version))?;
@@ -50,7 +54,47 @@ pub(crate) fn read(
         set.up = upright::of_map(&set, [header.points / header.rows, header.rows], false)
             .or(Some(camera));
     }
+    set.sensors = sensors;
     Ok(set)
+}
+
+/// Points on their way, which rows and columns may show to be those of a sensor.
+struct Image<'c, 'a> {
+    collector: &'c mut Collector<'a>,
+    /// Of an organised cloud.
+    pixels: Option<Pixels>,
+    columns: u64,
+    done: u64,
+}
+
+impl<'c, 'a> Image<'c, 'a> {
+    fn new(header: &Header, collector: &'c mut Collector<'a>) -> Self {
+        let columns = (header.points / header.rows.max(1)).max(1);
+        let pixels = (header.rows > 1).then(|| Pixels::new(header.points));
+        Self { collector, pixels, columns, done: 0 }
+    }
+
+    fn push(&mut self, row: &[f64]) -> Result<(), PointsError> {
+        if let Some(pixels) = &mut self.pixels {
+            let pixel = [self.done % self.columns, self.done / self.columns].map(|n| n as f64);
+            pixels.see(pixel, self.collector.position_of(row));
+        }
+        self.done += 1;
+        self.collector.push(row)
+    }
+
+    /// What the file says of its sensor, or its points show.
+    fn sensor(&self, header: &Header) -> Option<Sensor> {
+        let points = 0..self.done as u32;
+        let poses = header.viewpoint.into_iter().chain([Pose::IDENTITY]);
+        let shown = poses.filter_map(|pose| {
+            let pixels = self.pixels.as_ref()?;
+            let axes = pixels.axes(&pose, true)?;
+            Some(pose.sensor(axes, points.clone(), pixels.size()))
+        });
+        let said = || Some(header.viewpoint?.sensor(CAMERA, points.clone(), None));
+        shown.into_iter().next().or_else(said)
+    }
 }
 
 /// One number of a record.
@@ -115,7 +159,7 @@ fn binary(
     source: &mut Source<'_>,
     header: &Header,
     path: &Path,
-    collector: &mut Collector<'_>,
+    image: &mut Image<'_, '_>,
 ) -> Result<(), PointsError> {
     let size = header.record_size();
     let columns = header.columns();
@@ -137,7 +181,7 @@ fn binary(
             for (value, column) in row.iter_mut().zip(&columns) {
                 *value = column.kind.read::<false>(&record[column.place..]);
             }
-            collector.push(&row)?;
+            image.push(&row)?;
         }
         source.consume(records * size);
         done += records as u64;
@@ -150,7 +194,7 @@ fn compressed(
     source: &mut Source<'_>,
     header: &Header,
     path: &Path,
-    collector: &mut Collector<'_>,
+    image: &mut Image<'_, '_>,
 ) -> Result<(), PointsError> {
     let io_error = |source| PointsError::Io { path: path.into(), source };
     let wrong = |place: &str, found: String, expected: &str| {
@@ -203,7 +247,7 @@ fn compressed(
         for (value, &(kind, place, stride)) in row.iter_mut().zip(&columns) {
             *value = kind.read::<false>(&bytes[place + point * stride..]);
         }
-        collector.push(&row)?;
+        image.push(&row)?;
     }
     Ok(())
 }
@@ -212,7 +256,7 @@ fn text(
     source: &mut Source<'_>,
     header: &Header,
     path: &Path,
-    collector: &mut Collector<'_>,
+    image: &mut Image<'_, '_>,
 ) -> Result<(), PointsError> {
     // Padding is written too.
     let columns: Vec<&header::Declared> =
@@ -262,7 +306,7 @@ fn text(
             let expected = format!("the {} values of point {done}", columns.len());
             return Err(wrong(format!("{} values", words().count()), expected));
         }
-        collector.push(&row)?;
+        image.push(&row)?;
         done += 1;
     }
     Ok(())

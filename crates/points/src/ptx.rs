@@ -4,6 +4,9 @@
 //! and a matrix of four by four that takes its points to the coordinates of all scans, by rows whose last is
 //! the shift. Then comes a line for each direction: `x y z intensity`, and a colour in some.
 //! Directions without a measurement are `0 0 0`: they are counted as invalid.
+//!
+//! The matrix says where the scanner stands, since it takes it from the origin to there. Where it leaves points as they
+//! are, position and axes do: some programs write the points of all scans in the same coordinates.
 
 use crate::collect::Collector;
 use crate::error::{PointsError, Quoted};
@@ -11,12 +14,15 @@ use crate::field::{Field, Type};
 use crate::lines::{Lines, line_end_of, values, words};
 use crate::number::number;
 use crate::options::ReadOptions;
+use crate::sensor::{self, Pixels, Pose};
 use crate::set::PointSet;
 use crate::source::Source;
 use std::path::Path;
 
 /// How many numbers the lines of a scan's head have, after the two counts.
 const HEAD: [usize; 8] = [3, 3, 3, 3, 4, 4, 4, 4];
+/// What the first of them are.
+const HEAD_LINES: [&str; 4] = ["the scanner's position", "its x axis", "its y axis", "its z axis"];
 /// The colour of points in scans without, where others have: that of objects without any, 0.8, in sRGB.
 const NO_COLOR: f64 = 231.0;
 
@@ -100,11 +106,15 @@ struct Scans<'s, 'a> {
     has_colors: bool,
     uncolored: u64,
     notes: Vec<String>,
+    sensors: Vec<sensor::Scan>,
 }
 
 /// The head of a scan.
 struct Head {
     points: u64,
+    rows: u64,
+    /// Where the scanner stands.
+    pose: Pose,
     /// Rows of the rotation, and the shift: points are `p · rotation + shift`.
     rotation: [[f64; 3]; 3],
     shift: [f64; 3],
@@ -120,12 +130,15 @@ impl<'s, 'a> Scans<'s, 'a> {
     ) -> Result<PointSet, Failed> {
         let lines = Lines::new(source, path)?;
         let (row, notes) = (Vec::new(), Vec::new());
-        let mut scans = Self { lines, path, row, has_colors: false, uncolored: 0, notes };
+        let (has_colors, sensors) = (false, Vec::new());
+        let mut scans = Self { lines, path, row, has_colors, uncolored: 0, notes, sensors };
         let mut collector: Option<Collector<'_>> = None;
         let mut has_color = colored;
         let mut count = 0;
         while let Some(head) = scans.head(count)? {
             count += 1;
+            let before = collector.as_ref().map_or(0, Collector::seen);
+            let mut pixels = Pixels::new(head.points);
             for index in 0..head.points {
                 scans.point(&head, index, count)?;
                 let with_color = scans.row.len() == 7;
@@ -139,7 +152,9 @@ impl<'s, 'a> Scans<'s, 'a> {
                         collector.insert(new)
                     }
                 };
+                let pixel = [index / head.rows, index % head.rows].map(|n| n as f64);
                 if scans.row[..3] == [0.0; 3] {
+                    pixels.see(pixel, [0.0; 3]);
                     collector.push_invalid()?;
                     continue;
                 }
@@ -155,8 +170,16 @@ impl<'s, 'a> Scans<'s, 'a> {
                     _ => (),
                 }
                 head.place(&mut scans.row);
+                pixels.see(pixel, collector.position_of(&scans.row));
                 collector.push(&scans.row)?;
             }
+            scans.sensors.push(sensor::Scan {
+                pose: head.pose,
+                is_posed: true,
+                has_angles: false,
+                pixels: Some(pixels),
+                points: before..collector.as_ref().map_or(0, Collector::seen),
+            });
         }
         let mut collector = match collector {
             Some(collector) => collector,
@@ -174,6 +197,7 @@ impl<'s, 'a> Scans<'s, 'a> {
             ));
         }
         set.notes.append(&mut scans.notes);
+        set.sensors = sensor::of_scans(&scans.sensors);
         Ok(set)
     }
 
@@ -217,19 +241,30 @@ impl<'s, 'a> Scans<'s, 'a> {
             path: self.path.into(),
             found: columns.saturating_mul(rows),
         })?;
-        for axis in ["the scanner's position", "its x axis", "its y axis", "its z axis"] {
-            self.numbers(&format!("3 values: {axis}"), &[3])?;
+        let mut stated = [[0.0; 3]; 4];
+        for (of, what) in stated.iter_mut().zip(HEAD_LINES) {
+            self.numbers(&format!("3 values: {what}"), &[3])?;
+            of.copy_from_slice(&self.row);
         }
         let mut matrix = [[0.0; 4]; 4];
         for row in &mut matrix {
             self.numbers("4 values: a row of the matrix", &[4])?;
             row.copy_from_slice(&self.row);
         }
-        self.transform(points, matrix).map(Some)
+        let head = self.transform([points, rows], matrix)?;
+        let [position, axes @ ..] = stated;
+        // What leaves all points as they are says nothing of where they were taken from.
+        let unmoved = head.pose == Pose::IDENTITY;
+        let pose = if unmoved { pose(axes, position).unwrap_or(head.pose) } else { head.pose };
+        Ok(Some(Head { pose, ..head }))
     }
 
-    /// What a matrix does with points.
-    fn transform(&mut self, points: u64, mut m: [[f64; 4]; 4]) -> Result<Head, PointsError> {
+    /// What a matrix does with so many points, in so many rows.
+    fn transform(
+        &mut self,
+        [points, rows]: [u64; 2],
+        mut m: [[f64; 4]; 4],
+    ) -> Result<Head, PointsError> {
         let last_column = [m[0][3], m[1][3], m[2][3]];
         if m[3] == [0.0, 0.0, 0.0, 1.0] && last_column != [0.0; 3] {
             m = [0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|j| m[j][i]));
@@ -244,7 +279,10 @@ impl<'s, 'a> Scans<'s, 'a> {
             return Err(self.lines.wrong("another matrix", expected));
         }
         let rotation = [0, 1, 2].map(|i| [m[i][0], m[i][1], m[i][2]]);
-        Ok(Head { points, rotation, shift: [m[3][0], m[3][1], m[3][2]] })
+        let shift = [m[3][0], m[3][1], m[3][2]];
+        let unturned = Pose { translation: shift, ..Pose::IDENTITY };
+        let pose = pose(rotation, shift).unwrap_or(unturned);
+        Ok(Head { points, rows, pose, rotation, shift })
     }
 
     /// The line of a point, now in `row`.
@@ -274,6 +312,17 @@ impl Head {
             row[axis] = x * r[0][axis] + y * r[1][axis] + z * r[2][axis] + self.shift[axis];
         }
     }
+}
+
+/// That of a scanner with these axes and this place; `None` where they are no axes across each other.
+fn pose(axes: [[f64; 3]; 3], place: [f64; 3]) -> Option<Pose> {
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let unit = axes.map(|axis| axis.map(|x| x / dot(axis, axis).sqrt()));
+    let straight = |a: usize, b: usize| dot(unit[a], unit[b]).abs() < 1e-3;
+    let are_axes = straight(0, 1) && straight(1, 2) && straight(2, 0);
+    // Rows of a matrix that takes vectors to its right.
+    let rotation = [0, 1, 2].map(|i| [unit[0][i], unit[1][i], unit[2][i]]);
+    are_axes.then_some(Pose { rotation, translation: place })
 }
 
 fn fields(colored: bool) -> Vec<Field> {

@@ -2,6 +2,7 @@
 
 use crate::field::Type;
 use crate::names;
+use crate::sensor::Sensor;
 use crate::units::Units;
 use crate::upright::Upwards;
 use std::collections::TryReserveError;
@@ -46,6 +47,8 @@ pub struct PointSet {
     pub units: Units,
     /// Whether the file stores positions in floats of 32 bits.
     pub single_positions: bool,
+    /// Where the scans of the file were taken from, as far as it says so, in the order of their points.
+    pub sensors: Vec<Sensor>,
 }
 
 /// A number that every point has.
@@ -163,7 +166,21 @@ impl PointSet {
             notes: self.notes.clone(),
             units: self.units.clone(),
             single_positions: self.single_positions,
+            sensors: self.sensors.clone(),
         }
+    }
+
+    /// Where the sensor stood that measured the point in this place of the set, in the coordinates of the
+    /// positions; `None` where the file does not say so. The surface that it saw faces it. Of a mean of
+    /// several points ([`voxel_means`](crate::voxel_means)), it is that of the first.
+    ///
+    /// # Panics
+    /// If there is no such point.
+    pub fn sensor_of(&self, place: usize) -> Option<[f64; 3]> {
+        let index = self.file_index[place];
+        let after = self.sensors.partition_point(|sensor| sensor.points.end <= index);
+        let sensor = self.sensors.get(after)?;
+        sensor.points.contains(&index).then_some(sensor.position)
     }
 
     /// Smallest and largest coordinate along each axis; `None` without points.

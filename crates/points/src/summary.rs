@@ -11,6 +11,7 @@ pub use passes::summarize;
 use crate::cloud::origin_of;
 use crate::denoise::NoiseReport;
 use crate::dimension::Dimension;
+use crate::sensor::Sensor;
 use crate::strays::Apart;
 use crate::units::Units;
 use serde_json::{Map, Value, json};
@@ -55,6 +56,8 @@ pub struct PointSummary {
     pub dimension: Option<Dimension>,
     /// The noise of points on surfaces; `None` where nobody has looked, or there are too few.
     pub noise: Option<NoiseReport>,
+    /// Where the scans were taken from, as far as that is known.
+    pub sensors: Vec<Sensor>,
 }
 
 /// How many points were dropped, and why.
@@ -72,6 +75,9 @@ impl Dropped {
         self.non_finite + self.invalid
     }
 }
+
+/// Sensors that are shown in text.
+const SHOWN_SENSORS: usize = 8;
 
 impl PointSummary {
     /// The middle of the bulk's box, which a render of only these points subtracts from them before it goes
@@ -129,6 +135,16 @@ impl PointSummary {
                     Dimension::Volume(sign) => Some(sign.to_string()),
                 },
             })),
+            "sensors": self.sensors.iter().map(|sensor| json!({
+                "position": sensor.position,
+                "right": sensor.axes[0],
+                "up": sensor.axes[1],
+                "ahead": sensor.axes[2],
+                "first_point": sensor.points.start,
+                "points": sensor.points.len(),
+                "columns": sensor.image.map(|[columns, _]| columns),
+                "rows": sensor.image.map(|[_, rows]| rows),
+            })).collect::<Vec<_>>(),
         })
     }
 }
@@ -186,6 +202,16 @@ impl fmt::Display for PointSummary {
         if let Some(noise) = &self.noise {
             write!(f, "\nnoise    {noise}")?;
         }
+        for Sensor { position, points, image, .. } in self.sensors.iter().take(SHOWN_SENSORS) {
+            write!(f, "\nsensor   at {}, {} points", corner(*position), points.len())?;
+            if let Some([columns, rows]) = image {
+                write!(f, " in {columns} columns and {rows} rows")?;
+            }
+        }
+        if self.sensors.len() > SHOWN_SENSORS {
+            let others = self.sensors.len() - SHOWN_SENSORS;
+            write!(f, "\n         and {others} others, which --json lists")?;
+        }
         if self.attributes.is_empty() {
             return Ok(());
         }
@@ -209,6 +235,7 @@ impl fmt::Display for PointSummary {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sensor::CAMERA;
     use crate::set::{Attribute, ColorEncoding, PointSet, Values};
     use histogram::BINS;
 
@@ -229,6 +256,12 @@ mod tests {
             ],
             non_finite: 1,
             format: "PLY 1.0, ascii".to_owned(),
+            sensors: vec![Sensor {
+                position: [7.0, 8.0, 9.0],
+                axes: CAMERA,
+                points: 0..3,
+                image: Some([3, 1]),
+            }],
             ..PointSet::default()
         }
     }
@@ -251,7 +284,18 @@ mod tests {
             "spacing_sample": null,
             "notes": [],
             "units": "lengths",
+            "noise": null,
             "shape": null,
+            "sensors": [{
+                "position": [7.0, 8.0, 9.0],
+                "right": [1.0, 0.0, 0.0],
+                "up": [0.0, -1.0, 0.0],
+                "ahead": [0.0, 0.0, 1.0],
+                "first_point": 0,
+                "points": 3,
+                "columns": 3,
+                "rows": 1,
+            }],
         });
         let mut others = json.clone();
         let attributes = others.as_object_mut().unwrap().remove("attributes").unwrap();
@@ -293,9 +337,13 @@ mod tests {
     #[test]
     fn text_names_every_attribute() {
         let text = PointSummary::of(&set()).to_string();
-        for line in
-            ["points   2", "min      0.5 -2 0.1", "  red    3 .. 17", "  none   not a number"]
-        {
+        for line in [
+            "points   2",
+            "sensor   at 7 8 9, 3 points in 3 columns and 1 rows",
+            "min      0.5 -2 0.1",
+            "  red    3 .. 17",
+            "  none   not a number",
+        ] {
             assert!(text.lines().any(|found| found == line), "no '{line}' in\n{text}");
         }
     }

@@ -32,12 +32,12 @@ impl Upwards {
 /// Points of a map that are looked at.
 const SAMPLE: usize = 1 << 16;
 /// Fewer say nothing.
-const FEWEST: usize = 16;
+pub(crate) const FEWEST: usize = 16;
 /// How large the square of a correlation is that shows one number to follow another: that of tan θ with
 /// θ is 0.97 within 60 degrees, which covers lenses that are no pinholes.
-const FOLLOWS: f64 = 0.9;
+pub(crate) const FOLLOWS: f64 = 0.9;
 /// That of a lattice, whose x is its column, but for what 32 bits round.
-const IS: f64 = 0.999_999;
+pub(crate) const IS: f64 = 0.999_999;
 /// Maps this many times as wide as high are those of lidars, if they have no more rows (or columns,
 /// where a driver writes beam after beam) than lidars have beams.
 const FAR_WIDER: u64 = 4;
@@ -72,27 +72,17 @@ pub(crate) fn of_map(
     let (minor, major): (Vec<f64>, Vec<f64>) = (each(&minor), each(&major));
     let (columns_of, rows_of) = if by_columns { (major, minor) } else { (minor, major) };
 
-    let ahead = points.iter().filter(|p| p.0[2] > 0.0).count();
-    let few = points.len() / 100;
-    if ahead <= few || ahead >= points.len() - few {
-        let over_depth = |axis: usize| -> Vec<f64> {
-            each(&|p| if p.0[2] == 0.0 { 0.0 } else { p.0[axis] / p.0[2].abs() })
-        };
-        let across = correlation(&over_depth(0), &columns_of);
-        let down = correlation(&over_depth(1), &rows_of);
-        let x = correlation(&each(&|p| p.0[0]), &columns_of);
-        let y = correlation(&each(&|p| p.0[1]), &rows_of);
-        let is_lattice = |own: f64, over: f64| own * own > IS && over * over <= IS;
-        let lattice = is_lattice(x, across) && is_lattice(y, down);
-        if across * across > FOLLOWS && down * down > FOLLOWS && !lattice {
-            return Some(match down > 0.0 {
-                true => (Upwards::MinusY, "as a depth camera sees it"),
-                false => (Upwards::Y, "as a camera sees it that looks along -z"),
-            });
-        }
-        if lattice {
-            return None;
-        }
+    let list: Vec<([f64; 3], [f64; 2])> = (points.iter().zip(columns_of.iter().zip(&rows_of)))
+        .map(|(p, (&column, &row))| (p.0, [column, row]))
+        .collect();
+    if let Some(view) = camera_of(&list) {
+        return Some(match view.over_depth[1] > 0.0 {
+            true => (Upwards::MinusY, "as a depth camera sees it"),
+            false => (Upwards::Y, "as a camera sees it that looks along -z"),
+        });
+    }
+    if is_lattice(&list) {
+        return None;
     }
     let (long, short) = (columns.max(rows), columns.min(rows));
     if short <= MOST_BEAMS && long >= FAR_WIDER * short {
@@ -107,8 +97,60 @@ pub(crate) fn of_map(
     (empty <= FEW).then_some((Upwards::Z, "as around a scanner"))
 }
 
+/// How the view of a camera in the origin, which looks along z, follows columns and rows.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CameraView {
+    /// Whether points have positive z rather than negative.
+    pub(crate) is_ahead: bool,
+    /// Correlations of x/|z| with the column, and of y/|z| with the row.
+    pub(crate) over_depth: [f64; 2],
+    /// Those of x and of y.
+    pub(crate) plain: [f64; 2],
+}
+
+/// Points with their columns and rows, of which a camera in the origin could have seen all; `None` where
+/// some are before it and some are not.
+fn view_of(list: &[([f64; 3], [f64; 2])]) -> Option<CameraView> {
+    let ahead = list.iter().filter(|(p, _)| p[2] > 0.0).count();
+    let few = list.len() / 100;
+    if ahead > few && ahead < list.len() - few {
+        return None;
+    }
+    let of = |value: &dyn Fn(&[f64; 3]) -> f64, axis: usize| {
+        let values: Vec<f64> = list.iter().map(|(p, _)| value(p)).collect();
+        let pixels: Vec<f64> = list.iter().map(|(_, pixel)| pixel[axis]).collect();
+        correlation(&values, &pixels)
+    };
+    let over = |p: &[f64; 3], axis: usize| if p[2] == 0.0 { 0.0 } else { p[axis] / p[2].abs() };
+    Some(CameraView {
+        is_ahead: ahead > few,
+        over_depth: [0, 1].map(|axis| of(&|p| over(p, axis), axis)),
+        plain: [0, 1].map(|axis| of(&|p| p[axis], axis)),
+    })
+}
+
+impl CameraView {
+    fn is_lattice(&self) -> bool {
+        let square = |r: [f64; 2], axis: usize| r[axis] * r[axis];
+        (0..2).all(|i| square(self.plain, i) > IS && square(self.over_depth, i) <= IS)
+    }
+}
+
+/// Whether points over a plane follow columns and rows by themselves, seen from nowhere.
+fn is_lattice(list: &[([f64; 3], [f64; 2])]) -> bool {
+    view_of(list).is_some_and(|view| view.is_lattice())
+}
+
+/// How a camera in the origin saw points with these columns and rows; `None` where none did.
+pub(crate) fn camera_of(list: &[([f64; 3], [f64; 2])]) -> Option<CameraView> {
+    let view = view_of(list)?;
+    let [across, down] = view.over_depth;
+    let follows = across * across > FOLLOWS && down * down > FOLLOWS;
+    (follows && !view.is_lattice()).then_some(view)
+}
+
 /// How much two lists of numbers rise and fall together, from -1 to 1; 0 where one is constant.
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let count = a.len().max(1) as f64;
     let mean = |list: &[f64]| list.iter().sum::<f64>() / count;
     let (mean_a, mean_b) = (mean(a), mean(b));

@@ -109,7 +109,7 @@ pub(crate) struct Numbers {
 }
 
 /// Largest magnitude of a coordinate or radiometric value: its square is still far inside f32.
-const LARGE: f64 = 1e15;
+pub(crate) const LARGE: f64 = 1e15;
 /// Shortest length that counts as one.
 pub(crate) const SHORT: f64 = 1e-12;
 

@@ -125,3 +125,37 @@ fn which_way_is_up_is_said_and_can_be_overridden() {
     assert_eq!(found, asked);
     assert_ne!(found, pixels(&["lidar.pcd", "--up", "y"]).0);
 }
+
+/// A depth image, organised as PCL writes it, of a wall and a box before it.
+#[test]
+fn a_depth_image_is_first_seen_from_its_sensor() {
+    let folder = Folder::new();
+    let image = (0..32 * 24).fold(String::new(), |mut text, i| {
+        let (column, row) = (f64::from(i % 32) - 15.5, f64::from(i / 32) - 11.5);
+        let z = if column.abs() < 5.0 && row > 0.0 { 2.0 } else { 3.0 };
+        let _ = writeln!(text, "{} {} {z}", column / 31.0 * z, row / 31.0 * z);
+        text
+    });
+    let head = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n";
+    let viewpoint = "VIEWPOINT 0 0 0 1 0 0 0\n";
+    folder
+        .write("depth.pcd", &format!("{head}WIDTH 32\nHEIGHT 24\n{viewpoint}DATA ascii\n{image}"));
+    let stderr = |arguments: &[&str]| {
+        let common = ["depth.pcd", "-o", "a.exr"];
+        render(&folder, &[&common, arguments].concat()).succeeds().stderr
+    };
+    let line = "depth.pcd: one depth image, seen from where its sensor stood, 0 0 0, 53 by 41 degrees; --up y, \
+                --up z or --up -y shows it from outside";
+    assert!(stderr(&[]).contains(line), "{}", stderr(&[]));
+    let info = run_in(folder.path(), &["info", "a.exr"]).succeeds().stdout;
+    assert!(info.contains("eye = [0.0, 0.0, 0.0]"), "{info}");
+    let camera = "camera={ eye = [1, 0, -1], target = [0, 0, 3], up = [0, -1, 0] }";
+    for other in [&["--up", "-y"][..], &["--set", camera]] {
+        assert!(!stderr(other).contains("sensor"), "{other:?}");
+    }
+    let info = run_in(folder.path(), &["info", "depth.pcd", "--json"]).succeeds().stdout;
+    let info: Value = serde_json::from_str(&info).expect("JSON");
+    let sensor = &info["sensors"][0];
+    assert_eq!((&sensor["position"], &sensor["columns"]), (&json!([0.0, 0.0, 0.0]), &json!(32)));
+    assert_eq!((&sensor["up"], &sensor["points"]), (&json!([0.0, -1.0, 0.0]), &json!(768)));
+}

@@ -125,6 +125,11 @@ impl Layout {
         Self { fields, colors, normals, scans }
     }
 
+    /// Whether a scan has angles and ranges, and no positions.
+    pub(super) fn has_angles(&self, index: usize) -> bool {
+        self.scans[index].cartesian.is_none()
+    }
+
     /// Makes the row of a point of a scan; false if the point is invalid.
     pub(super) fn fill(
         &self,
@@ -147,9 +152,9 @@ impl Layout {
                 (None, None) => return false,
             };
         row.clear();
-        let turned = |v: [f64; 3]| scan.rotation.map(|r| r[0] * v[0] + r[1] * v[1] + r[2] * v[2]);
+        let turned = |v: [f64; 3]| scan.pose.turned(v);
         let position = turned(local);
-        row.extend([0, 1, 2].map(|axis| position[axis] + scan.translation[axis]));
+        row.extend([0, 1, 2].map(|axis| position[axis] + scan.pose.translation[axis]));
         if let Some(kind) = self.colors {
             let full = if kind == Type::U8 { 255.0 } else { 65535.0 };
             let color = places.color.filter(|_| valid(2));

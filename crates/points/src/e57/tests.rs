@@ -1,6 +1,7 @@
 //! Files that the crate `e57` writes, and what can be wrong with them.
 
 use crate::options::ReadOptions;
+use crate::sensor::SCANNER;
 use crate::set::{ColorEncoding, PointSet, Values};
 use crate::{PointsError, read_bytes};
 use ::e57::{
@@ -154,6 +155,14 @@ fn scans_are_put_where_their_poses_say() {
     let close = |a: [f64; 3], b: [f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-9);
     assert!(close(set.positions[1], [4e6 + 1.0, 0.5, -9.0]), "{:?}", set.positions);
     assert_eq!(set.positions[2], [0.5, -1.0, 0.0]);
+    // The second scan has no pose.
+    let [sensor] = set.sensors.as_slice() else { panic!("{:?}", set.sensors) };
+    assert_eq!((sensor.position, sensor.points.clone()), ([4e6, 0.0, -10.0], 0..2));
+    // Ahead of a scanner is x, which became y; its right is -y, which became x.
+    let axes = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]];
+    assert!((0..3).all(|i| close(sensor.axes[i], axes[i])), "{:?}", sensor.axes);
+    assert_eq!((sensor.image, set.sensor_of(1)), (None, Some([4e6, 0.0, -10.0])));
+    assert_eq!(set.sensor_of(2), None);
     // What the first scan has not.
     let colors = set.colors.unwrap();
     assert!(colors[0].iter().all(|channel| (channel - 0.8).abs() < 2e-3), "{colors:?}");
@@ -162,6 +171,38 @@ fn scans_are_put_where_their_poses_say() {
         panic!("{:?}", set.attributes);
     };
     assert!(intensity[0].is_nan() && intensity[2] == 9.0);
+}
+
+/// A pose that moves nothing is what programs write that know none; rows and columns show whether it is true.
+#[test]
+fn a_scan_in_the_origin_is_believed_where_rows_follow_heights() {
+    let unmoved = Transform {
+        rotation: Quaternion { w: 1.0, x: 0.0, y: 0.0, z: 0.0 },
+        translation: Translation { x: 0.0, y: 0.0, z: 0.0 },
+    };
+    let mut prototype = xyz(&RecordDataType::F64);
+    prototype.push(record(RecordName::RowIndex, integer(0, 30)));
+    prototype.push(record(RecordName::ColumnIndex, integer(0, 60)));
+    let sensors = |shift: f64| {
+        let point = |i: u16| {
+            let (row, column) = (f64::from(i / 60), f64::from(i % 60));
+            let (turn, height) = (-0.02 * column, 0.03 * row - 0.5);
+            let reach = 3.0 + f64::from(i % 7);
+            let across = reach * height.cos();
+            let p =
+                [across * turn.cos() + shift, across * turn.sin(), reach * height.sin() + shift];
+            let pixel = [i / 60, i % 60].map(|n| Integer(n.into()));
+            p.map(Double).into_iter().chain(pixel).collect::<Vec<_>>()
+        };
+        let scan = Made::new(prototype.clone(), (0..1800).map(point).collect());
+        read(&file(&[Made { pose: Some(unmoved.clone()), ..scan }])).unwrap().sensors
+    };
+    let seen = sensors(0.0);
+    assert_eq!((seen[0].position, seen[0].image), ([0.0; 3], Some([60, 30])));
+    assert_eq!(seen[0].axes, SCANNER);
+    assert_eq!(sensors(20.0), []);
+    let plain = Made { pose: Some(unmoved), ..plain(9) };
+    assert_eq!(read(&file(&[plain])).unwrap().sensors, []);
 }
 
 /// Full intensity is 1 or 255 where floats come without limits.
@@ -224,6 +265,8 @@ fn spherical_coordinates_become_cartesian_and_invalid_points_go() {
         assert!((0..3).all(|axis| (found[axis] - expected[axis]).abs() < 1e-15), "{found:?}");
     }
     assert_eq!((set.invalid, set.non_finite, set.in_file()), (2, 1, 6));
+    // Angles are seen from the origin, whether or not there is a pose.
+    assert_eq!((set.sensors[0].position, set.sensors[0].points.clone()), ([0.0; 3], 0..6));
     let intensity = set.attribute("intensity").unwrap();
     assert!(intensity.get(1).is_nan() && intensity.get(0) == 1.0);
     assert_eq!(set.attributes.len(), 1);

@@ -2,6 +2,7 @@
 
 use super::Fault;
 use crate::field::Type;
+use crate::sensor::Pose;
 use roxmltree::{Document, Node, ParsingOptions};
 
 /// Most elements of a description, and most numbers of a point.
@@ -14,9 +15,9 @@ pub(super) struct Scan {
     pub(super) place: u64,
     pub(super) count: u64,
     pub(super) columns: Vec<Column>,
-    /// Rows of a rotation, and what is added after it.
-    pub(super) rotation: [[f64; 3]; 3],
-    pub(super) translation: [f64; 3],
+    pub(super) pose: Pose,
+    /// Whether the file states it.
+    pub(super) is_posed: bool,
     /// Lowest and highest of each colour, where the scan says so.
     pub(super) color_limits: [Option<[f64; 2]>; 3],
 }
@@ -155,7 +156,6 @@ fn scan(index: usize, node: Node<'_, '_>) -> Result<Scan, Fault> {
         return Err(Fault::unread(of_scan("codecs"), "another codec", "bitPackCodec"));
     }
 
-    let (rotation, translation) = pose(node);
     let limits = child(node, "colorLimits");
     let color_limits = ["Red", "Green", "Blue"].map(|name| {
         let end = |end: &str| number(child(limits?, &format!("color{name}{end}"))?);
@@ -165,8 +165,8 @@ fn scan(index: usize, node: Node<'_, '_>) -> Result<Scan, Fault> {
         place: attribute("fileOffset")?,
         count: attribute("recordCount")?,
         columns,
-        rotation,
-        translation,
+        pose: pose(node),
+        is_posed: child(node, "pose").is_some(),
         color_limits,
     };
     if scan.record_bits() == 0 && scan.count > 0 {
@@ -217,34 +217,19 @@ fn column(index: usize, node: Node<'_, '_>) -> Result<Column, Fault> {
     Ok(Column { name, codec })
 }
 
-/// Rotation and translation of a scan; without a pose, none.
-fn pose(scan: Node<'_, '_>) -> ([[f64; 3]; 3], [f64; 3]) {
+/// How a scan is turned and moved; without a pose, not at all.
+fn pose(scan: Node<'_, '_>) -> Pose {
     let pose = child(scan, "pose");
     let part = |name: &str| pose.and_then(|pose| child(pose, name));
     let of = |part: Option<Node<'_, '_>>, name: &str, absent: f64| {
         part.and_then(|part| child(part, name)).and_then(number).unwrap_or(absent)
     };
     let rotation = part("rotation");
-    let mut q = [
-        of(rotation, "w", 1.0),
-        of(rotation, "x", 0.0),
-        of(rotation, "y", 0.0),
-        of(rotation, "z", 0.0),
-    ];
-    let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt();
-    if norm > 0.0 && norm.is_finite() {
-        q = q.map(|c| c / norm);
-    } else {
-        q = [1.0, 0.0, 0.0, 0.0];
-    }
-    let [w, x, y, z] = q;
-    let rotation = [
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-    ];
+    let q = [("w", 1.0), ("x", 0.0), ("y", 0.0), ("z", 0.0)];
+    let turned = Pose::of_quaternion(q.map(|(name, absent)| of(rotation, name, absent)), [0.0; 3]);
     let translation = part("translation");
-    (rotation, ["x", "y", "z"].map(|axis| of(translation, axis, 0.0)))
+    let translation = ["x", "y", "z"].map(|axis| of(translation, axis, 0.0));
+    Pose { translation, ..turned.unwrap_or(Pose::IDENTITY) }
 }
 
 /// The element of this name in another, whatever its namespace.

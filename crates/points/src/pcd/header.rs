@@ -3,6 +3,7 @@
 use crate::color;
 use crate::error::{PointsError, Quoted};
 use crate::field::Type;
+use crate::sensor::Pose;
 use crate::source::{Line, Source};
 use std::path::Path;
 
@@ -17,6 +18,8 @@ pub(super) struct Header {
     pub(super) points: u64,
     /// More than one in an organised cloud.
     pub(super) rows: u64,
+    /// What VIEWPOINT says: where the sensor was and how it was turned; `None` where it says nothing.
+    pub(super) viewpoint: Option<Pose>,
     pub(super) data: Data,
     /// Number of lines, so that messages about text can go on counting.
     pub(super) lines: u64,
@@ -80,6 +83,7 @@ pub(super) fn read(source: &mut Source<'_>, path: &Path) -> Result<Header, Point
     let mut version = "0.7".to_owned();
     let [mut names, mut sizes, mut types, mut counts] = [const { Vec::<String>::new() }; 4];
     let (mut width, mut height, mut points) = (None, None, None);
+    let mut viewpoint = None;
     for number in 1..=MAX_LINES {
         let wrong = |found: String, expected: &str| PointsError::Line {
             path: path.into(),
@@ -114,7 +118,7 @@ pub(super) fn read(source: &mut Source<'_>, path: &Path) -> Result<Header, Point
             "WIDTH" => width = Some(count("'WIDTH' and a number")?),
             "HEIGHT" => height = Some(count("'HEIGHT' and a number")?),
             "POINTS" => points = Some(count("'POINTS' and a number")?),
-            "VIEWPOINT" => (),
+            "VIEWPOINT" => viewpoint = pose(&rest),
             "DATA" => {
                 let data = match rest.first().map(String::as_str) {
                     Some("ascii") => Data::Ascii,
@@ -138,7 +142,15 @@ pub(super) fn read(source: &mut Source<'_>, path: &Path) -> Result<Header, Point
                         wrong("neither POINTS nor WIDTH before 'DATA'".to_owned(), "one of them")
                     })?,
                 };
-                return Ok(Header { version, fields, points, rows, data, lines: number });
+                return Ok(Header {
+                    version,
+                    fields,
+                    points,
+                    rows,
+                    viewpoint,
+                    data,
+                    lines: number,
+                });
             }
             _ if keyword.is_empty() || keyword.starts_with('#') => (),
             _ => {
@@ -155,6 +167,14 @@ pub(super) fn read(source: &mut Source<'_>, path: &Path) -> Result<Header, Point
         expected: "'DATA'".to_owned(),
         help: "export the file again",
     })
+}
+
+/// The pose that is no default. Words that are no pose say nothing: no point depends on them.
+fn pose(words: &[String]) -> Option<Pose> {
+    let numbers: Vec<f64> = words.iter().map(|word| word.parse().ok()).collect::<Option<_>>()?;
+    let &[x, y, z, qw, qx, qy, qz] = numbers.as_slice() else { return None };
+    let pose = Pose::of_quaternion([qw, qx, qy, qz], [x, y, z]);
+    pose.filter(|pose| *pose != Pose::IDENTITY)
 }
 
 /// The fields, or what is wrong with them: what was found, and what was expected.

@@ -230,6 +230,7 @@ impl Second {
             spacing_sample: spacing_sample.flatten(),
             notes: set.notes.clone(),
             units: set.units.clone(),
+            sensors: set.sensors.clone(),
         }
     }
 }
