@@ -41,7 +41,7 @@ fn close(a: [f64; 3], b: [f64; 3]) -> bool {
 }
 
 fn view(scene: &Scene, set: &Arc<PointSet>) -> Option<SensorView> {
-    let image = scene::ImageSettings { size: SIZE, ..scene.image.clone() };
+    let image = scene::ImageSettings { size: SIZE, ..scene.image };
     sensor_view(&Scene { image, ..scene.clone() }, &[Arc::clone(set)])
 }
 

@@ -50,8 +50,8 @@ impl Neighborhood {
             self.weight.push([0.0; LANES]);
         }
         let last = self.weight.len() - 1;
-        for axis in 0..3 {
-            self.y[axis][last][lane] = offset[axis];
+        for (list, offset) in self.y.iter_mut().zip(offset) {
+            list[last][lane] = offset;
         }
         self.weight[last][lane] = 1.0;
         self.count += 1;
@@ -103,7 +103,8 @@ impl Neighborhood {
         sums.map(|lanes| sum(&lanes))
     }
 
-    fn into_frame(&mut self, [u, v, n]: [[f32; 3]; 3]) {
+    /// Into a frame of these axes.
+    fn turn(&mut self, [u, v, n]: [[f32; 3]; 3]) {
         let [xs, ys, zs] = &self.y;
         for (axis, list) in [u, v, n].into_iter().zip(&mut self.local) {
             list.clear();
@@ -173,7 +174,7 @@ impl Neighborhood {
         self.weigh();
         let (total, squares, mean) = self.mean();
         let [u, v, n] = frame(self.covariance(mean));
-        self.into_frame([u, v, n]);
+        self.turn([u, v, n]);
         let (m, b) = self.moments();
         // Rows of 1, x, y, xx, yy, xy; entries of m.
         const ROWS: [[usize; COEFFICIENTS]; COEFFICIENTS] = [
@@ -228,10 +229,9 @@ fn frame(c: [f32; 6]) -> [[f32; 3]; 3] {
             let (pr, qr) = (a[p][r], a[q][r]);
             (a[p][r], a[q][r]) = (cosine * pr - sine * qr, sine * pr + cosine * qr);
             (a[r][p], a[r][q]) = (a[p][r], a[q][r]);
-            for axis in 0..3 {
-                let (x, y) = (v[p][axis], v[q][axis]);
-                (v[p][axis], v[q][axis]) = (cosine * x - sine * y, sine * x + cosine * y);
-            }
+            let (at_p, at_q) = (v[p], v[q]);
+            v[p] = std::array::from_fn(|i| cosine * at_p[i] - sine * at_q[i]);
+            v[q] = std::array::from_fn(|i| sine * at_p[i] + cosine * at_q[i]);
         }
         if !turned {
             break;
@@ -248,34 +248,26 @@ fn solve(
     mut b: [f64; COEFFICIENTS],
     ridge: f64,
 ) -> [f64; COEFFICIENTS] {
+    let before = |a: &[[f64; COEFFICIENTS]; COEFFICIENTS], i: usize, j: usize| {
+        (0..j).map(|k| a[i][k] * a[j][k]).sum::<f64>()
+    };
     for j in 0..COEFFICIENTS {
-        let mut d = a[j][j] + ridge;
-        for k in 0..j {
-            d -= a[j][k] * a[j][k];
-        }
+        let d = a[j][j] + ridge - before(&a, j, j);
         if d <= 0.0 {
             return [0.0; COEFFICIENTS];
         }
         a[j][j] = d.sqrt();
         for i in j + 1..COEFFICIENTS {
-            let mut x = a[i][j];
-            for k in 0..j {
-                x -= a[i][k] * a[j][k];
-            }
-            a[i][j] = x / a[j][j];
+            a[i][j] = (a[i][j] - before(&a, i, j)) / a[j][j];
         }
     }
     for i in 0..COEFFICIENTS {
-        for k in 0..i {
-            b[i] -= a[i][k] * b[k];
-        }
-        b[i] /= a[i][i];
+        let known: f64 = (0..i).map(|k| a[i][k] * b[k]).sum();
+        b[i] = (b[i] - known) / a[i][i];
     }
     for i in (0..COEFFICIENTS).rev() {
-        for k in i + 1..COEFFICIENTS {
-            b[i] -= a[k][i] * b[k];
-        }
-        b[i] /= a[i][i];
+        let known: f64 = (i + 1..COEFFICIENTS).map(|k| a[k][i] * b[k]).sum();
+        b[i] = (b[i] - known) / a[i][i];
     }
     b
 }

@@ -16,6 +16,8 @@ const NOISE_GROWTH: f32 = 1.22;
 const NOISE_SCATTER: f32 = 1.5;
 /// A residual over this share of h is that of a blob, which no feature explains.
 const BLOB: f32 = 0.2;
+/// Not even in space it grows by so much: there is another sheet.
+const JUMP: f32 = 2.0;
 /// A residual under this share of h is that of a surface without noise.
 const TINY: f32 = 0.02;
 
@@ -107,6 +109,15 @@ impl Nearest {
         );
     }
 
+    /// Values of a point and of its list.
+    fn with_others<T: Copy>(&self, at: usize, value: impl Fn(usize) -> T) -> [T; NEAREST + 1] {
+        let mut values = [value(at); NEAREST + 1];
+        for (entry, &other) in values[1..].iter_mut().zip(&self.lists[at]) {
+            *entry = value(other as usize);
+        }
+        values
+    }
+
     /// The distance to the last of each point, over the median of that of its neighbours.
     pub fn ratio(&self, at: usize) -> f32 {
         let mut around = self.lists[at].map(|other| self.squares[other as usize]);
@@ -133,76 +144,58 @@ impl Scales {
         on: &dyn Fn(f64) -> bool,
     ) -> Option<Self> {
         let count = near.points.len();
-        let mut fits = vec![Fit::default(); count];
-        // The level taken, and the highest that was fitted.
-        let mut taken = vec![[0u8; 2]; count];
-        let mut growth = vec![1f32; count];
-        let batches =
-            fits.chunks_mut(BATCH).zip(taken.chunks_mut(BATCH)).zip(growth.chunks_mut(BATCH));
-        for (((fits, taken), growth), first) in batches.zip((0..).step_by(BATCH / FAN)) {
-            let chunks = fits
-                .par_chunks_mut(FAN)
-                .zip(taken.par_chunks_mut(FAN))
-                .zip(growth.par_chunks_mut(FAN))
-                .enumerate();
-            let each = |worker: &mut Worker,
-                        (at, ((fits, taken), growth)): (
-                usize,
-                ((&mut [Fit], &mut [[u8; 2]]), &mut [f32]),
-            )| {
-                let group = first + at;
-                let reached = near.group(group).map(|at| Climb::new(nearest.squares[at]));
-                let mut climbs: Vec<Climb> = reached.collect();
-                for level in 0..LEVELS.len() {
-                    worker.climb(near, group, level, &mut climbs, smoothing);
-                }
-                for (((climb, fit), taken), growth) in
-                    climbs.iter().zip(fits).zip(taken).zip(growth)
-                {
-                    *growth = climb.growth();
-                    *fit = climb.result();
-                    *taken = [climb.level(), climb.fitted as u8];
-                }
+        let mut reached = vec![Reached::default(); count];
+        let batches = reached.chunks_mut(BATCH).zip((0..).step_by(BATCH / FAN));
+        for (batch, first) in batches {
+            let each = |worker: &mut Worker, (at, reached): (usize, &mut [Reached])| {
+                worker.fit_group(near, nearest, first + at, smoothing, reached);
             };
-            chunks.with_min_len(16).for_each_init(Worker::default, each);
+            let groups = batch.par_chunks_mut(FAN).enumerate().with_min_len(16);
+            groups.for_each_init(Worker::default, each);
             if !on(FIRST_FITS * (first * FAN + BATCH) as f64 / count.max(BATCH) as f64) {
                 return None;
             }
         }
-        let mut levels = vec![0u8; count];
-        levels.par_iter_mut().enumerate().with_min_len(512).for_each(|(at, level)| {
-            let mut around = [0u8; NEAREST + 1];
-            around[0] = taken[at][0];
-            for (entry, &other) in around[1..].iter_mut().zip(&nearest.lists[at]) {
-                *entry = taken[other as usize][0];
-            }
-            around.sort_unstable();
-            let median = around[NEAREST / 2];
-            *level = if median <= taken[at][1] { median } else { taken[at][0] };
-        });
-        // Where that is another level, once more at that one.
-        let chunks = fits.par_chunks_mut(FAN).enumerate();
-        chunks.with_min_len(16).for_each_init(Worker::default, |worker, (group, fits)| {
-            for (at, fit) in near.group(group).zip(fits) {
-                if levels[at] != taken[at][0] {
-                    let k = LEVELS[levels[at] as usize];
-                    if let Some(other) = worker.fit_alone(near, at, k) {
-                        *fit = other;
-                    }
-                }
-            }
-        });
-        let fills = |(at, fit): (usize, &Fit)| {
-            let mut around = [growth[at]; NEAREST + 1];
-            for (entry, &other) in around[1..].iter_mut().zip(&nearest.lists[at]) {
-                *entry = growth[other as usize];
-            }
-            around.sort_unstable_by(f32::total_cmp);
-            fit.s > FILLED * fit.h && around[NEAREST / 2] > FILLED_GROWTH
+        // The median of a point and its neighbours.
+        let level = |at: usize| {
+            let own = &reached[at];
+            let around = nearest.with_others(at, |at| reached[at].level);
+            let median = nth(around, u8::cmp);
+            if median <= own.fitted { median } else { own.level }
         };
-        let fills_space = fits.par_iter().enumerate().with_min_len(512).map(fills).collect();
+        let places = || (0..count).into_par_iter().with_min_len(512);
+        let levels: Vec<u8> = places().map(level).collect();
+        // Where that is another level, once more at that one.
+        let fit = |worker: &mut Worker, at: usize| {
+            let own = &reached[at];
+            let other = (levels[at] != own.level)
+                .then(|| worker.fit_alone(near, at, LEVELS[usize::from(levels[at])]));
+            other.flatten().unwrap_or(own.fit)
+        };
+        let fits: Vec<Fit> = places().map_init(Worker::default, fit).collect();
+        let fills = |at: usize| {
+            let growth = nth(nearest.with_others(at, |at| reached[at].growth), f32::total_cmp);
+            fits[at].s > FILLED * fits[at].h && growth > FILLED_GROWTH
+        };
+        let fills_space = places().map(fills).collect();
         on(1.0).then_some(Self { fits, fills_space })
     }
+}
+
+/// The median of a point and its neighbours.
+fn nth<T: Copy>(mut values: [T; NEAREST + 1], order: impl Fn(&T, &T) -> std::cmp::Ordering) -> T {
+    values.sort_unstable_by(order);
+    values[NEAREST / 2]
+}
+
+/// Where a point got to.
+#[derive(Debug, Clone, Copy, Default)]
+struct Reached {
+    fit: Fit,
+    /// The level of that, and the highest that was fitted.
+    level: u8,
+    fitted: u8,
+    growth: f32,
 }
 
 /// One point on its way through the levels.
@@ -228,11 +221,14 @@ impl Climb {
         self.right.unwrap_or(self.fitted) as u8
     }
 
-    /// What the residual grew by over the last two levels.
+    /// What the residual grew by over the last two levels; nothing where these reach over a feature.
     fn growth(&self) -> f32 {
+        let is_feature = self.right.is_some_and(|right| right + 1 == self.fitted);
         match self.fitted.checked_sub(2) {
-            Some(below) => self.fits[self.fitted].s / self.fits[below].s.max(f32::MIN_POSITIVE),
-            None => 1.0,
+            Some(below) if !is_feature => {
+                self.fits[self.fitted].s / self.fits[below].s.max(f32::MIN_POSITIVE)
+            }
+            _ => 1.0,
         }
     }
 
@@ -246,9 +242,9 @@ impl Climb {
         if level > 0 {
             let below = self.fits[level - 1];
             let growth = NOISE_GROWTH + NOISE_SCATTER / (LEVELS[level - 1] as f32).sqrt();
-            // The residual grows with the reach, and the neighbourhood is no blob: a feature, not noise.
-            let is_feature =
-                fit.s > growth * below.s && fit.s < BLOB * fit.h && below.s > TINY * below.h;
+            // The residual grows with the reach, and the neighbourhood is no blob; or it jumps: a feature, not noise.
+            let grows = fit.s > growth * below.s && fit.s < BLOB * fit.h;
+            let is_feature = (grows || fit.s > JUMP * below.s) && below.s > TINY * below.h;
             if is_feature {
                 self.right = Some(level - 1);
                 self.done = true;
@@ -272,6 +268,30 @@ pub(super) struct Worker {
 }
 
 impl Worker {
+    /// The fits of a group.
+    fn fit_group(
+        &mut self,
+        near: &Near<'_>,
+        nearest: &Nearest,
+        group: usize,
+        smoothing: &Smoothing,
+        reached: &mut [Reached],
+    ) {
+        let start = |at: usize| Climb::new(nearest.squares[at]);
+        let mut climbs: Vec<Climb> = near.group(group).map(start).collect();
+        for level in 0..LEVELS.len() {
+            self.climb(near, group, level, &mut climbs, smoothing);
+        }
+        for (climb, reached) in climbs.iter().zip(reached) {
+            *reached = Reached {
+                fit: climb.result(),
+                level: climb.level(),
+                fitted: climb.fitted as u8,
+                growth: climb.growth(),
+            };
+        }
+    }
+
     /// One level of a group.
     fn climb(
         &mut self,

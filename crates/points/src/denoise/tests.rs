@@ -158,7 +158,9 @@ fn normals_look_at_the_sensors_on_both_sides_of_a_thin_plate() {
     };
     let seen = Denoised::of(&points, &sensors, &SMOOTHING, &Unwatched).expect("no end");
     let (with, without) = (off(&seen), off(&denoised(&points)));
-    assert!(with < 0.5 * without, "{with} with sensors, {without} without");
+    let scatter = seen.is_scatter.iter().filter(|&&scatter| scatter).count();
+    assert!(scatter < points.len() / 12, "{scatter} points of two planes are scatter");
+    assert!(with < 0.9 * without && with < 0.5 * sigma, "{with} with sensors, {without} without");
     let looks = |(point, normal): (&Point, &[f32; 3])| (normal[2] > 0.0) == is_upper(point);
     let looking = points.iter().zip(&seen.normals).filter(|&pair| looks(pair)).count();
     assert!(looking * 100 > 97 * points.len(), "{looking} of {}", points.len());
@@ -200,7 +202,7 @@ fn points_that_fill_space_are_scatter_beside_a_surface_with_noise() {
         own.iter().filter(|&&scatter| scatter).count() as f64 / own.len() as f64
     };
     let (plane, leaves) = (share(|index| index < 20_000), share(|index| index >= 20_000));
-    assert!(plane < 0.01 && leaves > 0.9, "{plane} of the plane, {leaves} of the leaves");
+    assert!(plane < 0.01 && leaves > 0.85, "{plane} of the plane, {leaves} of the leaves");
 }
 
 #[test]
