@@ -161,9 +161,10 @@ fn normals_look_at_the_sensors_on_both_sides_of_a_thin_plate() {
     let scatter = seen.is_scatter.iter().filter(|&&scatter| scatter).count();
     assert!(scatter < points.len() / 12, "{scatter} points of two planes are scatter");
     assert!(with < 0.9 * without && with < 0.5 * sigma, "{with} with sensors, {without} without");
-    let looks = |(point, normal): (&Point, &[f32; 3])| (normal[2] > 0.0) == is_upper(point);
-    let looking = points.iter().zip(&seen.normals).filter(|&pair| looks(pair)).count();
-    assert!(looking * 100 > 97 * points.len(), "{looking} of {}", points.len());
+    let each = points.iter().zip(&seen.normals).zip(&seen.is_scatter);
+    let on_plates = || each.clone().filter(|(_, scatter)| !**scatter).map(|(pair, _)| pair);
+    let looking = on_plates().filter(|(p, normal)| (normal[2] > 0.0) == is_upper(p)).count();
+    assert_eq!(looking, on_plates().count(), "normals that look at their sensor");
 }
 
 #[test]
