@@ -46,7 +46,8 @@ impl NoiseReport {
         let points: Vec<[f32; 3]> = cloud.points.iter().map(|point| point.position).collect();
         let sample = Sample::of(&points)?;
         let noise = sample.noise();
-        let looked = look(&sample, matches!(noise, Noise::Quantised { .. }));
+        let in_steps = matches!(noise, Noise::Quantised { .. });
+        let looked = look(&sample, in_steps);
         Some(Self {
             noise,
             error: f64::from(sample.error().to_degrees()),
@@ -54,7 +55,7 @@ impl NoiseReport {
             spacing: f64::from(median(
                 looked.iter().map(|looked| SPACING * looked.square.sqrt()).collect(),
             )),
-            scatter: scattered(&looked),
+            scatter: scattered(&looked, in_steps),
             strays: strays.len() as u64,
             points: set.len() as u64,
         })
@@ -120,6 +121,9 @@ impl fmt::Display for NoiseReport {
 /// So many of the sample's points are asked for what is usual around one.
 const ASKED: usize = 64;
 
+/// Neighbours that reach over several steps of depths.
+const WIDE: usize = 256;
+
 /// What a point of the sample shows.
 struct Looked {
     position: [f32; 3],
@@ -128,8 +132,8 @@ struct Looked {
     is_apart: bool,
 }
 
-fn look(sample: &Sample<'_>, agreed: bool) -> Vec<Looked> {
-    let smoothing = Smoothing { accuracy: 2.5 / 180.0 * std::f32::consts::PI, agreed };
+fn look(sample: &Sample<'_>, in_steps: bool) -> Vec<Looked> {
+    let smoothing = Smoothing { accuracy: 2.5 / 180.0 * std::f32::consts::PI, agreed: false };
     let near = &sample.near;
     let places = sample.places.par_iter().with_min_len(16);
     places
@@ -139,7 +143,11 @@ fn look(sample: &Sample<'_>, agreed: bool) -> Vec<Looked> {
             let around = worker.others(at, own);
             let reaches = around.iter().filter_map(|&other| worker.reach(near, other, NEAREST));
             let is_apart = own > APART_BEFORE * median(reaches.collect());
-            let fit = worker.fit_of(near, at, &smoothing);
+            let fit = match in_steps {
+                // Over several of them.
+                true => worker.fit_alone(near, at, WIDE)?,
+                false => worker.fit_of(near, at, &smoothing),
+            };
             Some(Looked { position: near.points[at], fit, square: own * own, is_apart })
         })
         .flatten()
@@ -147,7 +155,7 @@ fn look(sample: &Sample<'_>, agreed: bool) -> Vec<Looked> {
 }
 
 /// The share that is scatter, by the rules of all points with the sample standing for what is around.
-fn scattered(looked: &[Looked]) -> f64 {
+fn scattered(looked: &[Looked], in_steps: bool) -> f64 {
     let is_scatter = |own: &&Looked| {
         let mut around: Vec<(f32, f32, f32)> = looked
             .iter()
@@ -157,7 +165,8 @@ fn scattered(looked: &[Looked]) -> f64 {
         around.select_nth_unstable_by(asked - 1, |a, b| a.0.total_cmp(&b.0));
         let s = median(around[..asked].iter().map(|other| other.1).collect());
         let reach = median(around[..asked].iter().map(|other| other.2).collect());
-        own.is_apart || scatter::by_fit(&own.fit, own.square, [s, reach])
+        // Steps are no noise: what their means are shows only in these.
+        own.is_apart || (!in_steps && scatter::by_fit(&own.fit, own.square, [s, reach]))
     };
     let count = looked.par_iter().with_min_len(16).filter(is_scatter).count();
     count as f64 / looked.len().max(1) as f64
