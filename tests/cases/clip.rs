@@ -305,7 +305,8 @@ fn closed_sets_have_the_same_bytes_but_for_rare_gaps_of_uneven_ones() {
         ("random sphere", random_sphere),
     ] {
         let [without, with] = [false, true]
-            .map(|clip| render(&bench, AROUND, &format!("boundary_clip = {clip}"), &set));
+            .map(|clip| format!("neighbors = 16\nboundary_clip = {clip}"))
+            .map(|surface| render(&bench, AROUND, &surface, &set));
         let differing = with
             .polynomials
             .iter()

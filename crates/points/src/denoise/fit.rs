@@ -1,6 +1,6 @@
 //! The weighted quadratic fit to a neighbourhood, with what its residual says.
 
-use super::lanes::{LANES, Lanes, exp_down, sum};
+use super::lanes::{LANES, Lanes, exp_down, sum, wide};
 
 /// Coefficients of the polynomial.
 const COEFFICIENTS: usize = 6;
@@ -57,6 +57,7 @@ impl Neighborhood {
         self.count += 1;
     }
 
+    #[inline(always)]
     fn weigh(&mut self) {
         let [xs, ys, zs] = &self.y;
         for (((weight, x), y), z) in self.weight.iter_mut().zip(xs).zip(ys).zip(zs) {
@@ -68,6 +69,7 @@ impl Neighborhood {
     }
 
     /// Weights' sum, that of their squares, and the weighted mean.
+    #[inline(always)]
     fn mean(&self) -> (f32, f32, [f32; 3]) {
         let mut sums = [[0.0; LANES]; 5];
         let [xs, ys, zs] = &self.y;
@@ -85,6 +87,7 @@ impl Neighborhood {
     }
 
     /// xx, yy, zz, xy, xz, yz about the mean.
+    #[inline(always)]
     fn covariance(&self, mean: [f32; 3]) -> [f32; 6] {
         let mut sums = [[0.0; LANES]; 6];
         let [xs, ys, zs] = &self.y;
@@ -104,6 +107,7 @@ impl Neighborhood {
     }
 
     /// Into a frame of these axes.
+    #[inline(always)]
     fn turn(&mut self, [u, v, n]: [[f32; 3]; 3]) {
         let [xs, ys, zs] = &self.y;
         for (axis, list) in [u, v, n].into_iter().zip(&mut self.local) {
@@ -119,6 +123,7 @@ impl Neighborhood {
     }
 
     /// Sums of weights times x^i y^j for i + j up to 4, and times f for i + j up to 2.
+    #[inline(always)]
     fn moments(&self) -> ([f32; 15], [f32; 6]) {
         let (mut m, mut b) = ([[0.0; LANES]; 15], [[0.0; LANES]; 6]);
         let [xs, ys, fs] = &self.local;
@@ -155,6 +160,7 @@ impl Neighborhood {
     }
 
     /// The sum of weighted squares of what the polynomial leaves.
+    #[inline(always)]
     fn residual(&self, c: [f32; COEFFICIENTS]) -> f32 {
         let mut squares = [0.0; LANES];
         let [xs, ys, fs] = &self.local;
@@ -171,6 +177,11 @@ impl Neighborhood {
 
     /// Fits 1, x, y, x², y², xy over the plane through the weighted mean.
     pub fn fit(&mut self, h: f32) -> Fit {
+        wide(|| self.fit_inlined(h))
+    }
+
+    #[inline(always)]
+    fn fit_inlined(&mut self, h: f32) -> Fit {
         self.weigh();
         let (total, squares, mean) = self.mean();
         let [u, v, n] = frame(self.covariance(mean));

@@ -1,6 +1,7 @@
 //! What is near the points of a set: candidates for eight points at a time, and the distance to the k-th of them.
 
 use super::FAN;
+use super::lanes::wide;
 use rayon::prelude::*;
 
 type Box3 = [[f32; 3]; 2];
@@ -129,6 +130,11 @@ impl<'a> Near<'a> {
 impl Scratch {
     /// Squared distances of all that is listed from a point.
     pub fn measure(&mut self, center: [f32; 3]) {
+        wide(|| self.measure_inlined(center));
+    }
+
+    #[inline(always)]
+    fn measure_inlined(&mut self, center: [f32; 3]) {
         let [xs, ys, zs] = &self.position;
         self.squares.clear();
         self.squares.extend(xs.iter().zip(ys).zip(zs).map(|((x, y), z)| {

@@ -11,6 +11,8 @@ pub(super) const LEVELS: [usize; 5] = [16, 32, 64, 128, 256];
 pub(super) const NEAREST: usize = LEVELS[0];
 /// The square root of two, which a radius grows by where neighbours on a surface double, and a little more.
 const GROWTH: f32 = 1.5;
+/// Around a radius that is guessed from that of another level.
+const GROWTH_AGAIN: f32 = 1.25;
 /// What the residual of pure noise grows by at most from level to level, with what few neighbours scatter it by.
 const NOISE_GROWTH: f32 = 1.22;
 const NOISE_SCATTER: f32 = 1.5;
@@ -168,14 +170,17 @@ impl Scales {
         // Where that is another level, once more at that one.
         let fit = |worker: &mut Worker, at: usize| {
             let own = &reached[at];
-            let other = (levels[at] != own.level)
-                .then(|| worker.fit_alone(near, at, LEVELS[usize::from(levels[at])]));
-            other.flatten().unwrap_or(own.fit)
+            if levels[at] == own.level {
+                return own.fit;
+            }
+            let [k, known] = [levels[at], own.level].map(|level| LEVELS[usize::from(level)]);
+            let radius = own.fit.h * GROWTH_AGAIN * (k as f32 / known as f32).sqrt();
+            worker.fit_within(near, at, k, radius)
         };
         let fits: Vec<Fit> = places().map_init(Worker::default, fit).collect();
         let fills = |at: usize| {
-            let growth = nth(nearest.with_others(at, |at| reached[at].growth), f32::total_cmp);
-            fits[at].s > FILLED * fits[at].h && growth > FILLED_GROWTH
+            let growth = || nth(nearest.with_others(at, |at| reached[at].growth), f32::total_cmp);
+            fits[at].s > FILLED * fits[at].h && growth() > FILLED_GROWTH
         };
         let fills_space = places().map(fills).collect();
         on(1.0).then_some(Self { fits, fills_space })
@@ -358,6 +363,14 @@ impl Worker {
                 return square;
             }
         }
+    }
+
+    /// The fit of one point to its k nearest others, of which there are so many, and most likely within a radius.
+    fn fit_within(&mut self, near: &Near<'_>, at: usize, k: usize, radius: f32) -> Fit {
+        near.gather_around(near.points[at], radius, &mut self.scratch);
+        let found = near.select(at, k, radius, &mut self.scratch);
+        let square = found.unwrap_or_else(|| self.search_alone(near, at, k, radius));
+        self.fit(near.points[at], square)
     }
 
     /// The distance of one point to its k-th nearest other; `None` where there are fewer.
