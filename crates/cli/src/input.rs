@@ -193,7 +193,7 @@ impl Input {
         if let (Some(point_file), Some(view)) = (open, plan::sensor_view(&self.scene, sets)) {
             self.note_sensor(&view, progress);
             let values = &point_file.values;
-            let lights = Scene::for_sensor(&self.path, &view.camera, view.axes, values)?.lights;
+            let lights = Scene::for_sensor(&self.path, view.axes, values)?.lights;
             let camera = Some(view.camera);
             return Ok((Cow::Owned(Scene { lights, camera, ..self.scene.clone() }), self.up));
         }

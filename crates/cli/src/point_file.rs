@@ -113,9 +113,9 @@ impl PointFile {
             None if !self.has_open_colors(object) || set.colors.is_some() => None,
             None if fills => scalar_of(set, read_all)?,
             None => by_intensity(set).filter(|_| is_picture(set)).inspect(|color| {
-                let [low, high] = color.range.unwrap_or_default();
+                let [_, high] = color.range.unwrap_or_default();
                 progress.note(&format!(
-                    "{file}: the points have no colours and are shown in grey by '{}', from {low} to {high}; \
+                    "{file}: the points have no colours and are shown in grey by '{}', white from {high}; \
                      --color height shows how high they lie",
                     color.name
                 ));
@@ -262,11 +262,12 @@ fn asked(by: &ColorBy, set: &PointSet, up: Up) -> Result<Color, String> {
     }
 }
 
-/// Intensities in grey, where the points have several.
+/// Intensities in grey, where the points have several: the least in a dark grey rather than in black, on which no shape is
+/// seen.
 fn by_intensity(set: &PointSet) -> Option<Color> {
     let values = set.attribute_meant("intensity")?;
     let [low, _, high] = part_of(values.iter(), values.len(), OF_INTENSITIES)?;
-    let range = Some([low, high]).filter(|_| low < high)?;
+    let range = Some([low - 0.5 * (high - low), high]).filter(|_| low < high)?;
     Some(Color { range: Some(range), is_gray: true, ..Color::of("intensity") })
 }
 

@@ -18,6 +18,7 @@ mod first_view;
 mod images;
 mod inside;
 mod isolated;
+mod lights;
 mod missing;
 mod needs;
 mod neighborhoods;
@@ -45,16 +46,17 @@ use bulk::Bulk;
 use denoise::denoise;
 use images::{ImageList, Use};
 use kernels::layout::{
-    self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, LIGHT_DIRECTIONAL,
-    LIGHT_POINT, MATERIAL_DIFFUSE, MATERIAL_GLASS, MEDIA_WORDS, NONE, ObjectInfo, SCENE_ABSORBS,
-    SCENE_ALPHA, SCENE_BLENDS, SCENE_CHANCE, SCENE_DIAGNOSTICS, SCENE_DIFFUSE, SCENE_DISPERSES,
-    SCENE_ENVIRONMENT, SCENE_LIGHTS, SCENE_MANY_LIGHTS, SCENE_NESTED, SCENE_REFINES, SCENE_SAMPLES,
-    SCENE_SCATTERS, SCENE_SHAPES, SCENE_SPHERES, SCENE_TEXTURES, SCENE_VALUES, SCENE_VOLUMES,
-    TRANSPARENT_CAMERA, TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
+    self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, MATERIAL_DIFFUSE,
+    MATERIAL_GLASS, MEDIA_WORDS, NONE, ObjectInfo, SCENE_ABSORBS, SCENE_ALPHA, SCENE_BLENDS,
+    SCENE_CHANCE, SCENE_DIAGNOSTICS, SCENE_DIFFUSE, SCENE_DISPERSES, SCENE_ENVIRONMENT,
+    SCENE_LIGHTS, SCENE_MANY_LIGHTS, SCENE_NESTED, SCENE_REFINES, SCENE_SAMPLES, SCENE_SCATTERS,
+    SCENE_SHAPES, SCENE_SPHERES, SCENE_TEXTURES, SCENE_VALUES, SCENE_VOLUMES, TRANSPARENT_CAMERA,
+    TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
 };
+use lights::local_light;
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
 use points::{Apart, Cloud, PointSet, SlotRange, Unwatched, Watch};
-use scene::{Fresnel, Light, Scene, Up};
+use scene::{Fresnel, Scene, Up};
 pub use scene::{Primary, RayLoop, Secondary};
 use std::sync::Arc;
 
@@ -245,7 +247,8 @@ impl Plan {
         let camera_media =
             inside::media_of_eye(scene, &bulk.sets, &bulk.world, (&cloud, &shapes), camera.eye);
         let view = View::new(&camera, image_size, cloud.origin);
-        let lights = scene.lights.iter().map(|light| local_light(light, cloud.origin)).collect();
+        let lights =
+            scene.lights.iter().map(|light| local_light(light, &camera, cloud.origin)).collect();
         let framed = Scene { camera: Some(camera), ..scene.clone() };
         Ok(Self {
             fits,
@@ -462,22 +465,4 @@ pub fn checked_crop(crop: Option<Window>, image: [u32; 2]) -> Result<Window, Pla
             && crop.origin[axis].checked_add(crop.size[axis]).is_some_and(|end| end <= image[axis])
     });
     if inside { Ok(crop) } else { Err(PlanError::Crop { crop, image }) }
-}
-
-fn local_light(light: &Light, origin: [f64; 3]) -> layout::Light {
-    let f32s = |v: [f64; 3]| v.map(|x| x as f32);
-    match *light {
-        Light::Directional { direction, irradiance, angle } => layout::Light {
-            vector: (-glam::DVec3::from(direction).normalize()).as_vec3().into(),
-            kind: LIGHT_DIRECTIONAL,
-            strength: f32s(irradiance),
-            extent: (0.5 * angle).to_radians().sin() as f32,
-        },
-        Light::Point { position, intensity, radius } => layout::Light {
-            vector: f32s([0, 1, 2].map(|axis| position[axis] - origin[axis])),
-            kind: LIGHT_POINT,
-            strength: f32s(intensity),
-            extent: radius as f32,
-        },
-    }
 }

@@ -346,9 +346,10 @@ pub(crate) static LIGHTS: Table = Table {
     keys: &[
         key(
             "kind",
-            Kind::Choice(&["directional", "point"]),
+            Kind::Choice(&["directional", "point", "headlight"]),
             Required("\"directional\""),
-            "Light from infinitely far away, or from a point.",
+            "Light from infinitely far away, from a point, or from the camera's eye (along its line of sight \
+             where rays are parallel), where no shadow is seen.",
         ),
         key_of(
             "directional",
@@ -387,6 +388,14 @@ pub(crate) static LIGHTS: Table = Table {
             Value("0.0"),
             "Radius of the sphere that shines. More than 0 makes soft shadows, with `image.samples` \
              over 1. Nothing sees the sphere itself.",
+        ),
+        key_of(
+            "headlight",
+            "at_target",
+            Kind::Vector(numbers(0.0, LARGE, "W m⁻², linear RGB")),
+            Required("[1.0, 1.0, 1.0]"),
+            "Irradiance on a surface that faces the light, as far away as the camera's target; at r times \
+             that distance it is 1/r² of it.",
         ),
     ],
 };

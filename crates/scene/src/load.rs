@@ -2,7 +2,7 @@
 
 use crate::document::{Node, Origin, SyntaxError, Value, parse_file, parse_value};
 use crate::error::{Problem, Source};
-use crate::keys::{self, LARGE, SCENE};
+use crate::keys::{self, SCENE};
 use crate::models::{self, MODELS_VARIABLE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
@@ -40,48 +40,34 @@ impl Scene {
     }
 
     /// The scene that a point file rendered directly means: one object with defaults, no camera
-    /// (the renderer frames it), a key light, a dimmer one from the camera, a grey background. `overrides`
+    /// (the renderer frames it), a key light, a dimmer one in the camera's eye, a grey background. `overrides`
     /// apply as in [`Scene::load`], with paths relative to the working directory.
     pub fn for_point_file(
         points: &Path,
         up: Up,
         overrides: &[String],
     ) -> Result<Scene, SceneError> {
-        let [key, fill] = lights_over(up);
-        let fill =
-            format!("kind = \"directional\", direction = {fill:?}, irradiance = {:?}", [DIM; 3]);
-        Self::around(points, (key, &fill), overrides)
+        Self::around(points, light_over(up), overrides)
     }
 
     /// The same for a camera in the place of a sensor, whose right, up and ahead are these unit vectors. The key
-    /// light comes from a little above and beside it, so that few of its shadows are seen; the dimmer one stands in its
-    /// place and has no shadows there. In a room, light from high above would end at the ceiling.
+    /// light comes from a little above and beside it, so that few of its shadows are seen. In a room, light from high
+    /// above would end at the ceiling.
     ///
     /// # Errors
     /// As [`Scene::for_point_file`].
     pub fn for_sensor(
         points: &Path,
-        camera: &Camera,
         [right, up, ahead]: [[f64; 3]; 3],
         overrides: &[String],
     ) -> Result<Scene, SceneError> {
         let key = [0, 1, 2].map(|i| -0.2 * right[i] - 0.25 * up[i] + ahead[i]);
-        let to_target = [0, 1, 2].map(|i| camera.target[i] - camera.eye[i]);
-        let square: f64 = to_target.iter().map(|x| x * x).sum();
-        // As bright at the target as the other dim light is everywhere.
-        let intensity = [(DIM * square).min(LARGE); 3];
-        let position = camera.eye;
-        let lamp = format!("kind = \"point\", position = {position:?}, intensity = {intensity:?}");
-        Self::around(points, (key, &lamp), overrides)
+        Self::around(points, key, overrides)
     }
 
-    fn around(
-        points: &Path,
-        lights: ([f64; 3], &str),
-        overrides: &[String],
-    ) -> Result<Scene, SceneError> {
+    fn around(points: &Path, key: [f64; 3], overrides: &[String]) -> Result<Scene, SceneError> {
         let source = Source { file: points, text: "", overrides };
-        let mut document = point_file_document(points, lights);
+        let mut document = point_file_document(points, key);
         let mut scene = checked(&mut document, Path::new(""), &source)?;
         models::find(&mut scene, models_folder().as_deref());
         let written = document.get("objects").and_then(|list| list.items().first()?.get("points"));
@@ -240,28 +226,24 @@ pub(crate) fn what_is_missing(
     }
 }
 
-/// As TOML, so that overrides and checks work on it as on any scene.
-/// Irradiance of the dimmer light over a point file.
-const DIM: f64 = 0.7;
-
-/// Directions of the key and the fill light over points whose up is this. The fill light comes from where the
-/// renderer puts the camera: its shadows are not seen, and those of the key light are not black.
-fn lights_over(up: Up) -> [[f64; 3]; 2] {
+/// Direction of the key light over points whose up is this.
+fn light_over(up: Up) -> [f64; 3] {
     // Turned from y up by a quarter turn about x, (x, y, z) to (x, -z, y), or by half a turn, to
     // (x, -y, -z).
     match up {
-        Up::Y => [[-0.5, -1.0, -0.6], [-0.45, -0.35, -1.0]],
-        Up::Z => [[-0.5, 0.6, -1.0], [-0.45, 1.0, -0.35]],
-        Up::MinusY => [[-0.5, 1.0, 0.6], [-0.45, 0.35, 1.0]],
+        Up::Y => [-0.5, -1.0, -0.6],
+        Up::Z => [-0.5, 0.6, -1.0],
+        Up::MinusY => [-0.5, 1.0, 0.6],
     }
 }
 
-/// With the direction of the key light, and the keys of the dimmer one.
-fn point_file_document(points: &Path, (key, fill): ([f64; 3], &str)) -> Node {
+/// As TOML, so that overrides and checks work on it as on any scene. With the direction of the key light: the dimmer
+/// one is in the eye, where no shadow of its own is seen, so that none is black.
+fn point_file_document(points: &Path, key: [f64; 3]) -> Node {
     let text = format!(
         "{{ background = {{ color = [0.18, 0.18, 0.18] }}, lights = [\
-         {{ kind = \"directional\", direction = {key:?}, irradiance = [2.6, 2.6, 2.6] }},\
-         {{ {fill} }}\
+         {{ kind = \"directional\", direction = {key:?}, irradiance = [2.5, 2.5, 2.5] }},\
+         {{ kind = \"headlight\", at_target = [0.6, 0.6, 0.6] }}\
          ], objects = [{{ points = {} }}] }}",
         crate::settings::quoted(&points.to_string_lossy())
     );
@@ -372,6 +354,7 @@ impl Light {
                 intensity: table.vector("intensity"),
                 radius: table.number("radius"),
             },
+            "headlight" => Self::Headlight { at_target: table.vector("at_target") },
             _ => Self::Directional {
                 direction: table.vector("direction"),
                 irradiance: table.vector("irradiance"),

@@ -185,6 +185,11 @@ pub enum Light {
         /// Of the sphere that it is, 0 to 1e15; 0 casts hard shadows.
         radius: f64,
     },
+    /// A point light in the camera's eye; where rays are parallel, light along the line of sight.
+    Headlight {
+        /// Irradiance on a surface that faces it at the distance of the target, W m⁻², each 0 to 1e15.
+        at_target: [f64; 3],
+    },
 }
 
 /// One point set with its place, surface and material.

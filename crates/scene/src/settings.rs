@@ -97,6 +97,10 @@ fn write_light(out: &mut String, light: &Light) -> fmt::Result {
             writeln!(out, "intensity = {intensity:?}")?;
             writeln!(out, "radius = {radius:?}")
         }
+        Light::Headlight { at_target } => {
+            writeln!(out, "kind = \"headlight\"")?;
+            writeln!(out, "at_target = {at_target:?}")
+        }
     }
 }
 

@@ -180,8 +180,10 @@ fn write_scene(
     }
     let directional =
         scene.lights.iter().filter(|light| matches!(light, Light::Directional { .. })).count();
-    let point = scene.lights.len() - directional;
-    writeln!(text, "lights   {directional} directional, {point} point")?;
+    let headlights =
+        scene.lights.iter().filter(|light| matches!(light, Light::Headlight { .. })).count();
+    let point = scene.lights.len() - directional - headlights;
+    writeln!(text, "lights   {directional} directional, {point} point, {headlights} in the eye")?;
     writeln!(text, "points   {}", plan.point_count)?;
     writeln!(text, "min      {}", corner(plan.cloud.bounds[0]))?;
     writeln!(text, "max      {}", corner(plan.cloud.bounds[1]))?;

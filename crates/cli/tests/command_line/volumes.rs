@@ -120,12 +120,12 @@ fn points_without_colors_are_shown_by_their_intensity() {
     folder.write("ball.csv", &ball(|i| i));
     let (shown, said) = pixels(&folder, &["ball.csv"]);
     let line =
-        "ball.csv: the points have no colours and are shown in grey by 'intensity', from 8 to 391";
+        "ball.csv: the points have no colours and are shown in grey by 'intensity', white from 391";
     assert!(said.contains(line), "{said}");
     let gray = [
         "ball.csv",
         "--set",
-        "objects.0.material={ albedo = \"attribute:intensity\", color_map = \"gray\", value_range = [8, 391] }",
+        "objects.0.material={ albedo = \"attribute:intensity\", color_map = \"gray\", value_range = [-183.5, 391] }",
     ];
     assert_eq!(shown, pixels(&folder, &gray).0);
     assert_eq!(shown, pixels(&folder, &["ball.csv", "--color", "intensity"]).0);

@@ -66,24 +66,22 @@ fn a_point_file_is_a_scene_of_its_own() {
 
 /// The light falls from above: against y, or against z.
 #[test]
-fn up_turns_the_lights_of_a_point_file() {
+fn up_turns_the_light_of_a_point_file() {
     let folder = tempfile::tempdir().unwrap();
     let points = folder.path().join("a.ply");
     std::fs::write(&points, "").unwrap();
-    let directions = |up| -> Vec<[f64; 3]> {
+    let direction = |up| {
         let lights = Scene::for_point_file(&points, up, &[]).unwrap().lights;
-        let direction = |light: &Light| match *light {
-            Light::Directional { direction, .. } => direction,
-            Light::Point { .. } => panic!("a point light"),
+        let [Light::Directional { direction, .. }, Light::Headlight { .. }] = lights[..] else {
+            panic!("{lights:?}")
         };
-        lights.iter().map(direction).collect()
+        direction
     };
     let turn = Transform { rotate: [90.0, 0.0, 0.0], ..Transform::IDENTITY };
-    let turned: Vec<_> = directions(Up::Y).into_iter().map(|d| turn.rotate(d)).collect();
-    assert_eq!(directions(Up::Z), turned);
-    let over: Vec<_> = directions(Up::Y).into_iter().map(|[x, y, z]| [x, -y, -z]).collect();
-    assert_eq!(directions(Up::MinusY), over);
-    assert!(directions(Up::Y)[0][1] < 0.0);
+    let [x, y, z] = direction(Up::Y);
+    assert_eq!(direction(Up::Z), turn.rotate([x, y, z]));
+    assert_eq!(direction(Up::MinusY), [x, -y, -z]);
+    assert!(y < 0.0);
 }
 
 #[cfg(unix)]

@@ -42,6 +42,9 @@ fn settings_state_every_built_key() {
     // Instead of a volume along the way.
     let iso = "[objects.volume]\nscalar = \"s\"\nmode = \"isosurface\"\niso = 0.5\n";
     settings += &read(&format!("{SMALL}{iso}")).unwrap().settings_toml();
+    // Of a kind that FULL has not.
+    let lamp = "[[lights]]\nkind = \"headlight\"\nat_target = [1, 1, 1]\n";
+    settings += &read(&format!("{lamp}{SMALL}")).unwrap().settings_toml();
     for (name, path) in keys {
         // Columns have names of their own, below the key as a header.
         let is_stated =
