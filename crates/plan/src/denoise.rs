@@ -8,9 +8,10 @@ use scene::{Neighbors, Object, Scene, SurfaceKind};
 use std::fmt;
 use std::sync::Arc;
 
-/// Radius of a disc or sphere at a point that lies on no surface, over the mean spacing there: half the mean distance from
-/// one of so many random points to its nearest other.
-const SHARE: f32 = 0.25;
+/// Radius of a disc or sphere at a point that lies on no surface, over the spacing there, and of a stray over the median
+/// spacing.
+const SHARE: f32 = 0.5;
+const OF_STRAY: f32 = 0.25;
 
 /// What was done to the points of an object with noise.
 #[derive(Debug, Clone, PartialEq)]
@@ -187,27 +188,29 @@ impl Noisy {
         };
         let denoised = Denoised::of(&points, &sensors, &self.smoothing, watch)
             .ok_or(PlanError::Interrupted)?;
-        // Strays are as large as the others are at most, and look anywhere.
+        // Strays look anywhere.
         let mut is_scatter = vec![true; own.len()];
-        let mut spacings = vec![denoised.spacing; own.len()];
+        let mut radii = vec![OF_STRAY * denoised.spacing; own.len()];
         let mut normals = vec![[0.0; 3]; own.len()];
         for (place, &at) in left.iter().enumerate() {
             own[at].position = denoised.positions[place];
             is_scatter[at] = denoised.is_scatter[place];
-            spacings[at] = denoised.spacings[place];
+            radii[at] = SHARE * denoised.spacings[place];
             normals[at] = denoised.normals[place];
         }
         cloud.put_last(self.index, &is_scatter);
         let scatter = is_scatter.iter().filter(|&&is_scatter| is_scatter).count();
         let drawn = scatter_kind(object);
         let of_scatter = |at: &usize| is_scatter[*at];
-        let share = if drawn.is_some() { SHARE } else { 0.0 };
         let shapes = (scatter > 0).then(|| Shapes {
             object: self.index as u32,
             first_slot: (range.end - scatter) as u32,
             count: scatter as u32,
             kind: drawn.unwrap_or(ShapeKind::Disc),
-            radii: (0..range.len()).filter(of_scatter).map(|at| share * spacings[at]).collect(),
+            radii: (0..range.len())
+                .filter(of_scatter)
+                .map(|at| if drawn.is_some() { radii[at] } else { 0.0 })
+                .collect(),
             normals: Some((0..range.len()).filter(of_scatter).map(|at| normals[at]).collect()),
         });
         let found = Denoising {

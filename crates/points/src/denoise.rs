@@ -29,6 +29,7 @@ use judge::median;
 use kernels::layout::Point;
 use near::Near;
 use scales::{NEAREST, Nearest, Scales};
+use scatter::Judged;
 
 /// Points of a group that share a search.
 const FAN: usize = 8;
@@ -39,6 +40,9 @@ const APART_BEFORE: f32 = 3.0;
 const APART_AFTER: f32 = 2.5;
 /// Rounds of the latter.
 const ROUNDS: usize = 2;
+/// A point whose h16 grew by over so much as scatter was taken away is what is left of scatter. On the rim of a surface,
+/// it grows by the square root of two.
+const LEFT_OVER: f32 = 2.0;
 /// The mean spacing of points on a plane of which 17 lie within h16, over that.
 const SPACING: f32 = 0.43;
 /// Steps of the work, for the watcher: searches, fits, rounds.
@@ -65,7 +69,8 @@ pub struct Denoised {
     pub normals: Vec<[f32; 3]>,
     /// Which points are no samples of a surface.
     pub is_scatter: Vec<bool>,
-    /// The spacing of points around each, at most the median.
+    /// The spacing of points at each, s; where that is over m, what is usual around, m²/s: what lies far from others
+    /// stands for no area.
     pub spacings: Vec<f32>,
     /// The median spacing of points on surfaces.
     pub spacing: f32,
@@ -122,19 +127,27 @@ impl Denoised {
             watch.done((count as f64 * (3.0 + share * (FITTED - 3) as f64) / STEPS as f64) as u64);
             !watch.interrupted()
         })?;
-        let is_scatter = scatter::by_fits(&near, &scales, &nearest.squares);
+        let judged = scatter::by_fits(&near, &scales, &nearest.squares);
         let mut places: Vec<u32> =
-            (0..left.len() as u32).filter(|&at| !is_scatter[at as usize]).collect();
+            (0..left.len() as u32).filter(|&at| !judged.is_scatter[at as usize]).collect();
         step(FITTED + 1)?;
-        for _ in 0..ROUNDS {
+        for round in 0.. {
             if places.len() <= NEAREST {
                 break;
             }
+            let count = places.len();
             let some: Vec<[f32; 3]> = places.iter().map(|&at| kept[at as usize]).collect();
             let around =
                 nearest.of_some(&Near::new(&some), &places, |at| index(places[at] as usize));
-            let near = |at: &usize| around.ratio(*at) <= APART_AFTER;
-            places = (0..places.len()).filter(near).map(|at| places[at]).collect();
+            let stays = |at: &usize| {
+                let before = nearest.squares[places[*at] as usize];
+                around.squares[*at] <= LEFT_OVER * LEFT_OVER * before
+                    && (round >= ROUNDS || around.ratio(*at) <= APART_AFTER)
+            };
+            places = (0..count).filter(stays).map(|at| places[at]).collect();
+            if round >= ROUNDS && places.len() == count {
+                break;
+            }
         }
         step(FITTED + 2)?;
         let on_fit = |&at: &u32| {
@@ -156,16 +169,29 @@ impl Denoised {
             bilateral::filter(&mut oriented);
             step(FITTED + 2 + round)?;
         }
-        denoised.take(&places, &oriented, &left, &scales);
+        denoised.take(&places, &oriented, (&left, &scales, &judged));
         Some(denoised)
     }
 
     /// `places`: of what lies on surfaces, among the points `left`.
-    fn take(&mut self, places: &[u32], oriented: &[Oriented], left: &[u32], scales: &Scales) {
+    fn take(
+        &mut self,
+        places: &[u32],
+        oriented: &[Oriented],
+        (left, scales, judged): (&[u32], &Scales, &Judged),
+    ) {
         self.sigma = median(places.iter().map(|&at| scales.fits[at as usize].s).collect());
         let spacings = places.iter().map(|&at| self.spacings[left[at as usize] as usize]);
         self.spacing = median(spacings.collect());
-        self.spacings.iter_mut().for_each(|spacing| *spacing = spacing.min(self.spacing));
+        let mut usual = vec![self.spacing; self.spacings.len()];
+        for (&at, square) in left.iter().zip(&judged.squares_around) {
+            usual[at as usize] = SPACING * square.sqrt();
+        }
+        for (spacing, usual) in self.spacings.iter_mut().zip(usual) {
+            if *spacing > usual {
+                *spacing = usual * (usual / *spacing);
+            }
+        }
         self.is_scatter.fill(true);
         for (fit, &at) in scales.fits.iter().zip(left) {
             self.normals[at as usize] = fit.normal;

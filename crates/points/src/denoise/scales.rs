@@ -13,6 +13,8 @@ pub(super) const NEAREST: usize = LEVELS[0];
 const GROWTH: f32 = 1.5;
 /// Around a radius that is guessed from that of another level.
 const GROWTH_AGAIN: f32 = 1.25;
+/// Where h grows by over so much to twice the neighbours, these lie across a gap. Along a line it doubles.
+const GAP: f32 = 3.0;
 /// What the residual of pure noise grows by at most from level to level, with what few neighbours scatter it by.
 const NOISE_GROWTH: f32 = 1.22;
 const NOISE_SCATTER: f32 = 1.5;
@@ -237,6 +239,12 @@ impl Climb {
         }
     }
 
+    /// The last level is the highest that is on one side of a gap.
+    fn end(&mut self) {
+        self.right = Some(self.fitted);
+        self.done = true;
+    }
+
     fn result(&self) -> Fit {
         self.fits[usize::from(self.level())]
     }
@@ -346,6 +354,10 @@ impl Worker {
         level: usize,
         smoothing: &Smoothing,
     ) {
+        if level > 0 && square > GAP * GAP * climb.square {
+            climb.end();
+            return;
+        }
         climb.square = square;
         let fit = self.fit(near.points[at], square);
         climb.judge(level, fit, smoothing);
@@ -395,6 +407,7 @@ impl Worker {
                 break;
             }
             match self.fit_alone(near, at, k) {
+                Some(fit) if level > 0 && fit.h > GAP * climb.fits[level - 1].h => climb.end(),
                 Some(fit) => climb.judge(level, fit, smoothing),
                 None => break,
             }

@@ -23,31 +23,47 @@ const SPARSE: f32 = 2.5;
 const NOISY: f32 = 1.5;
 const THICK: f32 = 0.15;
 
-/// Which points are scatter by their fits. `squares`: h16².
-pub(super) fn by_fits(near: &Near<'_>, scales: &Scales, squares: &[f32]) -> Vec<bool> {
+/// What fits say of points.
+pub(super) struct Judged {
+    /// Which are scatter.
+    pub is_scatter: Vec<bool>,
+    /// The median of h16² around each.
+    pub squares_around: Vec<f32>,
+}
+
+/// Judges points by their fits. `squares`: h16².
+pub(super) fn by_fits(near: &Near<'_>, scales: &Scales, squares: &[f32]) -> Judged {
     let fits = &scales.fits;
     let standing: Vec<usize> = (0..near.points.len()).step_by(EVERY).collect();
     let few: Vec<[f32; 3]> = standing.iter().map(|&at| near.points[at]).collect();
     let sparse = Near::new(&few);
-    let mut is_scatter = vec![false; near.points.len()];
-    let chunks = is_scatter.par_chunks_mut(FAN).enumerate();
-    chunks.with_min_len(64).for_each_init(Medians::default, |medians, (group, is_scatter)| {
-        let places = near.group(group);
-        // The first of the group asks for all.
-        let [s, square] = medians.around(
-            &sparse,
-            near.points[places.start],
-            |of, which| {
-                let at = standing[of];
-                if which == 0 { fits[at].s } else { squares[at] }
-            },
-            places.start / EVERY,
-        );
-        for (at, is_scatter) in places.zip(is_scatter) {
-            *is_scatter = scales.fills_space[at] || by_fit(&fits[at], squares[at], [s, square]);
-        }
-    });
-    is_scatter
+    let mut judged = Judged {
+        is_scatter: vec![false; near.points.len()],
+        squares_around: vec![0.0; near.points.len()],
+    };
+    let chunks = judged.is_scatter.par_chunks_mut(FAN);
+    let chunks = chunks.zip(judged.squares_around.par_chunks_mut(FAN)).enumerate();
+    let judge =
+        |medians: &mut Medians,
+         (group, (is_scatter, around)): (usize, (&mut [bool], &mut [f32]))| {
+            let places = near.group(group);
+            // The first of the group asks for all.
+            let [s, square] = medians.around(
+                &sparse,
+                near.points[places.start],
+                |of, which| {
+                    let at = standing[of];
+                    if which == 0 { fits[at].s } else { squares[at] }
+                },
+                places.start / EVERY,
+            );
+            for (at, is_scatter) in places.zip(is_scatter) {
+                *is_scatter = scales.fills_space[at] || by_fit(&fits[at], squares[at], [s, square]);
+            }
+            around.fill(square);
+        };
+    chunks.with_min_len(64).for_each_init(Medians::default, judge);
+    judged
 }
 
 /// Whether a point is scatter by its fit and h16², with the medians of residuals and h16² around.

@@ -183,7 +183,35 @@ fn strays_around_a_plane_are_scatter() {
     assert!(found * 100 >= 97 * strays, "{found} of {strays}");
     assert!(wrong < 200, "{wrong} of the plane's");
     let farthest = denoised.spacings.iter().copied().fold(0.0, f32::max);
-    assert_eq!(farthest, denoised.spacing, "what is scattered is no larger than the rest");
+    // Medians of 64 differ from that of all: 1.03.
+    assert!(farthest < 1.1 * denoised.spacing, "{farthest}, the rest {}", denoised.spacing);
+}
+
+/// Of 26 points that fill a ball far from all others, some are scatter; the rest would see its neighbours across the gap.
+#[test]
+fn what_is_left_of_a_small_ball_of_scatter_is_scatter() {
+    let mut random = Random(7);
+    let mut positions = plane(20_000, 0.003, &mut random);
+    for ball in 0..8 {
+        let around = f64::from(ball) * 3.0 + 5.0;
+        positions.extend((0..26).map(|_| {
+            let [x, y, z] = [0; 3].map(|_| 0.02 * random.normal());
+            [x + around, y, z]
+        }));
+    }
+    let points = cloud(&positions);
+    let denoised = denoised(&points);
+    for ball in 0..8 {
+        let own = |point: &Point| (point.index as i64 - 20_000).div_euclid(26) == ball;
+        let left: Vec<usize> =
+            (0..points.len()).filter(|&at| own(&points[at]) && !denoised.is_scatter[at]).collect();
+        assert!(left.is_empty() || left.len() > NEAREST, "ball {ball}: {} see across", left.len());
+        for at in left {
+            let way =
+                [0, 1, 2].map(|axis| denoised.positions[at][axis] - points[at].position[axis]);
+            assert!(way.iter().all(|x| x.abs() < 0.06), "ball {ball}: {way:?}");
+        }
+    }
 }
 
 #[test]
