@@ -27,6 +27,8 @@ const QUANTISED: f32 = 0.5;
 const ONE_DIRECTION: f32 = 0.9;
 /// The cosine of the largest angle to that direction, 8 degrees.
 const ALONG: f64 = 0.99;
+/// Steps at least that the sample takes.
+const STEPS: usize = 8;
 /// Edge of a voxel over the median distance to the nearest other.
 const EDGE: f32 = 3.5;
 
@@ -129,21 +131,31 @@ impl<'a> Sample<'a> {
         }
         let wide = self.fits(&places, WIDE);
         let crosses = |wide: &Fit| wide.s > OVER_STEPS * wide.h;
-        let normals: Vec<[f32; 3]> = fits
-            .iter()
-            .zip(&wide)
-            .filter(|(_, wide)| crosses(wide))
-            .map(|(fit, _)| fit.normal)
-            .collect();
-        if !enough(normals.len()) {
+        let crossing = fits.iter().zip(&places).zip(&wide).filter(|(_, wide)| crosses(wide));
+        let (fits, places): (Vec<Fit>, Vec<u32>) =
+            crossing.map(|((fit, place), _)| (*fit, *place)).unzip();
+        if !enough(fits.len()) {
             return false;
         }
+        let normals: Vec<[f32; 3]> = fits.iter().map(|fit| fit.normal).collect();
         let way = main_direction(&normals);
         let along = |normal: &&[f32; 3]| {
             let cosine: f64 = (0..3).map(|axis| f64::from(normal[axis]) * way[axis]).sum();
             cosine.abs() > ALONG
         };
-        normals.iter().filter(along).count() as f32 > ONE_DIRECTION * normals.len() as f32
+        if normals.iter().filter(along).count() as f32 <= ONE_DIRECTION * normals.len() as f32 {
+            return false;
+        }
+        // A few sheets are no steps.
+        let height = |&at: &u32| -> f64 {
+            let p = self.near.points[at as usize];
+            (0..3).map(|axis| f64::from(p[axis]) * way[axis]).sum()
+        };
+        let mut heights: Vec<f64> = places.iter().map(height).collect();
+        heights.sort_unstable_by(f64::total_cmp);
+        let apart = f64::from(ON_A_STEP * median(fits.iter().map(|fit| fit.h).collect()));
+        let steps = heights.windows(2).filter(|pair| pair[1] - pair[0] > apart).count() + 1;
+        steps >= STEPS
     }
 }
 

@@ -257,7 +257,9 @@ impl Climb {
             let growth = NOISE_GROWTH + NOISE_SCATTER / (LEVELS[level - 1] as f32).sqrt();
             // The residual grows with the reach, and the neighbourhood is no blob; or it jumps: a feature, not noise.
             let grows = fit.s > growth * below.s && fit.s < BLOB * fit.h;
-            let is_feature = (grows || fit.s > JUMP * below.s) && below.s > TINY * below.h;
+            let jumps = (grows || fit.s > JUMP * below.s) && below.s > TINY * below.h;
+            // Of steps, what is left over grows until several are in reach.
+            let is_feature = jumps && !smoothing.agreed;
             if is_feature {
                 self.right = Some(level - 1);
                 self.done = true;

@@ -326,6 +326,11 @@ fn depths_in_steps_are_quantised_and_layers_of_nodes_are_not() {
     let Noise::Quantised { edge } = noise else { panic!("{noise:?}") };
     // Pixels are 0.01 apart at a depth of 2.
     assert!((0.025..0.045).contains(&edge), "{edge}");
+    // Two sheets that points lie on exactly.
+    let sheets: Vec<[f64; 3]> = (0..20_000)
+        .map(|i| [f64::from(i % 100), f64::from(i / 100 % 100), f64::from(i / 10_000) * 6.0])
+        .collect();
+    assert_eq!(Noise::of(&positions_of(&cloud(&sheets))), Noise::Clean);
     // Layers around an axis: their normals differ.
     let nodes: Vec<[f64; 3]> = (0..60_000)
         .map(|i| {
