@@ -305,7 +305,7 @@ fn closed_sets_have_the_same_bytes_but_for_rare_gaps_of_uneven_ones() {
         ("random sphere", random_sphere),
     ] {
         let [without, with] = [false, true]
-            .map(|clip| format!("neighbors = 16\nboundary_clip = {clip}"))
+            .map(|clip| format!("neighbors = 16, boundary_clip = {clip}"))
             .map(|surface| render(&bench, AROUND, &surface, &set));
         let differing = with
             .polynomials

@@ -20,8 +20,8 @@ const COLUMNS: &str = "_,y,x,z,_,red,green,blue";
 fn scene(columns: &str) -> String {
     format!(
         "image.size = [32, 24]\nbackground.color = [0.18, 0.18, 0.18]\n[[lights]]\nkind = \
-         \"directional\"\ndirection = [-0.5, -1.0, -0.6]\nirradiance = [2.6, 2.6, 2.6]\n[[lights]]\n\
-         kind = \"directional\"\ndirection = [-0.45, -0.35, -1.0]\nirradiance = [0.7, 0.7, 0.7]\n\
+         \"directional\"\ndirection = [-0.5, -1.0, -0.6]\nirradiance = [2.5, 2.5, 2.5]\n[[lights]]\n\
+         kind = \"headlight\"\nat_target = [0.6, 0.6, 0.6]\n\
          [[objects]]\npoints = \"ball.txt\"\n{columns}"
     )
 }
