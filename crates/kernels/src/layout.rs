@@ -1059,7 +1059,7 @@ pub struct ObjectInfo {
     pub max_iterations: u32,
     /// Of the refinement, over h.
     pub tolerance: f32,
-    /// Slots that carry the object's surface; behind these come its spheres and discs.
+    /// Slots that carry the object's surface; its spheres and discs come after these.
     pub slot_count: u32,
     /// h over the width of the weights.
     pub weight_scale: f32,

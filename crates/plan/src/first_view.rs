@@ -109,7 +109,7 @@ impl Seen {
         Some(Self { axes: [right, right.cross(ahead), ahead], ..self })
     }
 
-    /// Least and greatest tangents to the right and up that points have; `None` where points lie behind.
+    /// Least and greatest tangents to the right and up that points have; `None` where points lie behind the eye.
     fn window(&self) -> Option<[[f64; 2]; 2]> {
         let [right, up, ahead] = self.axes;
         let most = (0.5 * WIDEST).tan();

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Points asked: one normal alone may be wrong.
 const ASKED: usize = 8;
 
-/// The objects of glass that the eye is inside of, as many as a path can hold; those of spheres once for each sphere.
+/// The objects of glass that the eye is inside, as many as a path can hold; those of spheres once for each sphere.
 /// `world` has the points of each object in the world.
 pub(crate) fn media_of_eye(
     scene: &Scene,

@@ -1,6 +1,6 @@
 //! Points with noise, moved onto the surface that they are samples of (docs/method.md, section 1).
 //!
-//! Each point has a scale of its own: the fewest neighbours whose quadratic fit gives a normal that noise leaves alone
+//! Each point has a scale of its own: the fewest neighbours whose quadratic fit gives a normal that noise hardly moves
 //! (after Mitra and Nguyen, Estimating Surface Normals in Noisy Point Cloud Data, 2003, and Pauly, Keiser and Gross,
 //! Multi-scale Feature Extraction on Point-Sampled Surfaces, 2003). It moves to its foot on that fit. What is no sample
 //! of a surface is set apart. Normals are filtered over the surface and not over its edges, and points moved after them
@@ -38,8 +38,10 @@ const SMALLEST: f32 = 1e-15;
 /// A point is apart where its h16 is over so many times the median of its neighbours': before the fits, and after them.
 const APART_BEFORE: f32 = 3.0;
 const APART_AFTER: f32 = 2.5;
-/// Rounds of the latter.
+/// Rounds of the latter, and of what follows, which mostly ends after two or three: along a wire it would go on point by
+/// point.
 const ROUNDS: usize = 2;
+const MOST_ROUNDS: usize = 16;
 /// A point whose h16 grew by over so much as scatter was taken away is what is left of scatter. On the rim of a surface,
 /// it grows by the square root of two.
 const LEFT_OVER: f32 = 2.0;
@@ -131,7 +133,7 @@ impl Denoised {
         let mut places: Vec<u32> =
             (0..left.len() as u32).filter(|&at| !judged.is_scatter[at as usize]).collect();
         step(FITTED + 1)?;
-        for round in 0.. {
+        for round in 0..MOST_ROUNDS {
             if places.len() <= NEAREST {
                 break;
             }

@@ -89,7 +89,7 @@ impl<R: Real> Albedos<'_, R> {
     }
 }
 
-/// The slots of an object's points that carry its surface: behind these come its spheres and discs.
+/// The slots of an object's points that carry its surface: its spheres and discs come after these.
 #[must_use]
 pub fn slots_of(object: &ObjectInfo) -> Range<u32> {
     object.first_slot..object.first_slot + object.slot_count

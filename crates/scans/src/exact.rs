@@ -1,4 +1,4 @@
-//! Sine, cosine, logarithm and exponential by +, −, × and ÷ alone, so that scans are the same bits on every machine.
+//! Sine, cosine, logarithm and exponential by +, −, × and ÷ only, so that scans are the same bits on every machine.
 //! (A crate of such functions, `libm`, would be one more dependency of the program for four short series.)
 
 use std::f64::consts::{FRAC_PI_2, LN_2, SQRT_2};

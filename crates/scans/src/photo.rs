@@ -19,7 +19,7 @@ const BLIND: f64 = 0.16;
 /// Points that lie anywhere in a box around the room.
 const OUTLIERS: f64 = 0.02;
 const AROUND: [V3; 2] = [[-0.3; 3], [4.0, 4.0, 3.0]];
-/// How far inside of a body a surface is hidden.
+/// How far inside a body a surface is hidden.
 const INSIDE: f64 = 1e-9;
 
 /// Densities and holes.

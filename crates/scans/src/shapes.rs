@@ -37,7 +37,7 @@ impl Block {
         for (along, half) in self.along.into_iter().zip(self.half) {
             let (o, d) = (dot(from, along), dot(d, along));
             let ([a, b], inside) = ([(-half - o) / d, (half - o) / d], o.abs() <= half);
-            // Along a face, 0 / 0: inside of the slab or not.
+            // Along a face, 0 / 0: inside the slab or not.
             let [low, high] = match a.is_nan() || b.is_nan() || d == 0.0 {
                 true if inside => [f64::NEG_INFINITY, f64::INFINITY],
                 true => return None,

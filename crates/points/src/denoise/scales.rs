@@ -1,4 +1,4 @@
-//! How far each point has to look around for a normal that noise leaves alone.
+//! How far each point has to look around for a normal that noise hardly moves.
 
 use super::fit::{Fit, Neighborhood};
 use super::near::{Near, Scratch};
@@ -365,7 +365,7 @@ impl Worker {
         climb.judge(level, fit, smoothing);
     }
 
-    /// Searches for a point alone, wider and wider.
+    /// Searches for one point, wider and wider.
     fn search_alone(&mut self, near: &Near<'_>, at: usize, k: usize, radius: f32) -> f32 {
         let bound = near.bound(at, k, &mut self.scratch);
         let most = bound.unwrap_or(f32::INFINITY).sqrt();
