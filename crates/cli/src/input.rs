@@ -361,22 +361,22 @@ impl Input {
             note_projection(projection, progress);
         }
         for warning in &plan.coarse {
-            progress.note(&format!("warning: {warning}"));
+            progress.warn(&format!("{warning}"));
         }
         for (object, apart) in &plan.apart {
             let file = self.scene.objects[*object].points.display();
-            progress.note(&format!("warning: {file}: {apart}"));
+            progress.warn(&format!("{file}: {apart}"));
         }
         for denoising in &plan.denoised {
             let file = self.scene.objects[denoising.object].points.display();
             progress.note(&format!("{file}: {denoising}"));
         }
         for missing in &plan.missing {
-            progress.note(&format!("warning: {missing}"));
+            progress.warn(&format!("{missing}"));
         }
         for image in &plan.cleaned {
-            progress.note(&format!(
-                "warning: {}: {} pixels were changed: {}",
+            progress.warn(&format!(
+                "{}: {} pixels were changed: {}",
                 image.file, image.pixels, image.rule
             ));
         }
@@ -400,7 +400,7 @@ impl Input {
                 ));
             }
             if let Some(note) = looks_like_degrees(&set.units, index) {
-                progress.note(&format!("warning: {file}: {note}"));
+                progress.warn(&format!("{file}: {note}"));
             }
         }
     }
@@ -424,8 +424,8 @@ fn note_projection(projection: &MapProjection, progress: &Progress) {
          ({projection}); camera, lights and transforms are in these"
     ));
     if projection.stretch > 0.01 {
-        progress.note(&format!(
-            "warning: the points in degrees reach so far that lengths are up to {:.0} % too long away from the \
+        progress.warn(&format!(
+            "the points in degrees reach so far that lengths are up to {:.0} % too long away from the \
              centre; choose a smaller part by objects.filter for true proportions",
             100.0 * projection.stretch
         ));
@@ -489,7 +489,7 @@ pub fn note_points(
     ] {
         if count > 0 {
             let all = usable + dropped.count();
-            progress.note(&format!("warning: {file}: dropped {count} of {all} points, {why}"));
+            progress.warn(&format!("{file}: dropped {count} of {all} points, {why}"));
         }
     }
 }

@@ -88,6 +88,11 @@ impl Progress {
         }
     }
 
+    /// Warns on stderr, unless `--quiet`, of a picture that may not be what was meant. `line` says what to do.
+    pub fn warn(&self, line: &str) {
+        self.note(&format!("warning: {line}"));
+    }
+
     /// Says something on stderr, unless `--quiet`.
     pub fn note(&self, line: &str) {
         if !self.quiet {

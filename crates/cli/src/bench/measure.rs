@@ -81,8 +81,8 @@ fn timed(
         times.gpu.extend(frame.gpu_ms());
         times.traversal.push(frame.traversal);
         if pixel_hash(&frame.film) != pixels {
-            progress.note(&format!(
-                "warning: {}: two frames of the same scene differ, which is a bug of the device \
+            progress.warn(&format!(
+                "{}: two frames of the same scene differ, which is a bug of the device \
                  or of pointillist; please report it",
                 case.name
             ));

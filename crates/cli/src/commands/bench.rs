@@ -90,7 +90,7 @@ fn time(
 }
 
 fn skip(skipped: Skipped, report: &mut Report, progress: &Progress) {
-    progress.note(&format!("warning: skipped '{}': {}", skipped.name, skipped.reason));
+    progress.warn(&format!("skipped '{}': {}", skipped.name, skipped.reason));
     report.skipped.push(skipped);
 }
 

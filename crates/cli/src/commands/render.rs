@@ -39,19 +39,19 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     files::check_distinct(&outputs, &input.files())?;
     let progress = Progress::new(&args.progress);
     if diagnostics.is_empty() && !args.channels.is_empty() {
-        progress.note(
-            "warning: --channels is ignored, since only EXR files hold diagnostic channels; add \
+        progress.warn(
+            "--channels is ignored, since only EXR files hold diagnostic channels; add \
              -o FILE.exr",
         );
     }
     if args.tone() != Tone::default() && formats.iter().all(|format| *format == FileFormat::Exr) {
-        progress.note(
-            "warning: --exposure and --tone are ignored, since EXR files hold the numbers as they are; \
+        progress.warn(
+            "--exposure and --tone are ignored, since EXR files hold the numbers as they are; \
              add -o FILE.png",
         );
     }
     if args.half && !formats.contains(&FileFormat::Exr) {
-        progress.note("warning: --half is ignored, since it is for EXR files; add -o FILE.exr");
+        progress.warn("--half is ignored, since it is for EXR files; add -o FILE.exr");
     }
     with_engine(&args.device, |engine| render(args, &mut input, diagnostics, engine, &progress))
 }
@@ -138,8 +138,8 @@ fn write_pictures(
 fn warn_of_bright_values(film: &Film, progress: &Progress) {
     let beyond = film::beyond_half(film);
     if beyond > 0 {
-        progress.note(&format!(
-            "warning: --half: {beyond} values of R, G and B are beyond {}, the largest that 16 bits hold, \
+        progress.warn(&format!(
+            "--half: {beyond} values of R, G and B are beyond {}, the largest that 16 bits hold, \
              and were written as that; leave --half out to keep them",
             film::HALF_MAX
         ));
@@ -163,10 +163,7 @@ fn warn_of_missing_surfaces(plan: &Plan, built: &Built, progress: &Progress) {
                      background"
                 }
             };
-            progress.note(&format!(
-                "warning: object '{name}': none of its {} points {why}",
-                outcomes.len()
-            ));
+            progress.warn(&format!("object '{name}': none of its {} points {why}", outcomes.len()));
         }
     }
 }
