@@ -4,7 +4,7 @@ use crate::point_file::ColorBy;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use film::{Tone, ToneCurve};
-use plan::Diagnostic;
+use plan::{Diagnostic, Extra};
 use std::path::PathBuf;
 
 /// The whole command line.
@@ -60,9 +60,9 @@ pub struct RenderArgs {
     /// Curve from radiance to PNG and JPEG files, after the exposure
     #[arg(long, value_name = "CURVE", value_enum, default_value_t = Curve::Linear)]
     pub tone: Curve,
-    /// Diagnostic channels to add to EXR files, with commas between; may be given several times
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = diagnostic_parser())]
-    pub channels: Vec<Diagnostic>,
+    /// Channels to add to EXR files, with commas between; may be given several times
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = channels_parser())]
+    pub channels: Vec<Channels>,
     /// Write R, G, B, A and N of EXR files in 16 bits instead of 32; all other channels stay
     #[arg(long)]
     pub half: bool,
@@ -254,6 +254,15 @@ pub enum ProgressWhen {
     Never,
 }
 
+/// What one name of `--channels` adds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Channels {
+    /// One channel, of what the render did.
+    Diagnostic(Diagnostic),
+    /// One or several, of what is seen.
+    Extra(Extra),
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Curve {
     /// Cut at white
@@ -311,11 +320,15 @@ pub fn parse() -> Result<Arguments, clap::Error> {
 }
 
 /// Names what there is in the help, and the nearest in an error.
-fn diagnostic_parser() -> impl TypedValueParser<Value = Diagnostic> {
-    let named =
-        |diagnostic: Diagnostic| PossibleValue::new(diagnostic.name()).help(diagnostic.meaning());
-    PossibleValuesParser::new(Diagnostic::ALL.map(named))
-        .try_map(|name| Diagnostic::named(&name).ok_or("no diagnostic channel"))
+fn channels_parser() -> impl TypedValueParser<Value = Channels> {
+    let diagnostics = Diagnostic::ALL.map(|one| (one.name(), one.meaning()));
+    let extras = Extra::ALL.map(|one| (one.name(), one.meaning()));
+    let all = diagnostics.into_iter().chain(extras);
+    let named = |(name, meaning)| PossibleValue::new(name).help(meaning);
+    PossibleValuesParser::new(all.map(named)).try_map(|name| {
+        let diagnostic = Diagnostic::named(&name).map(Channels::Diagnostic);
+        diagnostic.or_else(|| Extra::named(&name).map(Channels::Extra)).ok_or("no channel")
+    })
 }
 
 fn parse_size(text: &str) -> Result<Size, String> {

@@ -15,13 +15,13 @@ const FILM_PIXEL: u64 = 48;
 /// World position, centred point, sort key, order, polynomial, cell lists.
 const POINT: u64 = 160;
 
-/// Fails where a picture of this window with so many diagnostics does not fit.
+/// Fails where a picture of this window with so many further channels does not fit.
 pub fn require_picture(
     window: Window,
     outputs: &[FileFormat],
-    diagnostics: usize,
+    added: usize,
 ) -> Result<(), Failure> {
-    let film = FILM_PIXEL + size_of::<f32>() as u64 * diagnostics as u64;
+    let film = FILM_PIXEL + size_of::<f32>() as u64 * added as u64;
     let copies = if outputs.contains(&FileFormat::Exr) { 2 } else { 1 };
     let [width, height] = window.size;
     let bytes = copies * film * u64::from(width) * u64::from(height);

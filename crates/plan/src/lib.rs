@@ -13,6 +13,7 @@ mod denoise;
 mod diagnostic;
 mod discs;
 mod error;
+mod extra;
 mod filter;
 mod first_view;
 mod images;
@@ -34,6 +35,7 @@ pub use denoise::Denoising;
 pub use diagnostic::Diagnostic;
 pub use discs::{MAX_DISC_PAIRS, screen_tiles};
 pub use error::PlanError;
+pub use extra::Extra;
 pub use first_view::{SensorView, sensor_view};
 pub use images::{Cleaned, SceneImages};
 pub use missing::{Lacking, Missing};
@@ -152,6 +154,8 @@ pub struct Plan {
     pub missing: Vec<Missing>,
     /// Diagnostics that the film is to have, each at most once. None at first.
     pub diagnostics: Vec<Diagnostic>,
+    /// What else the film is to have, each at most once. None at first.
+    pub extras: Vec<Extra>,
     transparent: bool,
     channel_alpha: bool,
     provenance: film::Provenance,
@@ -303,6 +307,7 @@ impl Plan {
             coarse,
             missing,
             diagnostics: Vec::new(),
+            extras: Vec::new(),
             transparent: scene.image.transparent,
             channel_alpha,
             provenance: film::Provenance {

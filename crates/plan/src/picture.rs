@@ -67,10 +67,11 @@ impl Picture {
         };
         let mut film = Film::empty(plan.image_size, window, plan.transparent);
         film.channel_alpha = plan.channel_alpha.then(|| vec![[0.0; 3]; window.pixels()]);
-        film.extra = plan
-            .diagnostics
-            .iter()
-            .map(|diagnostic| (diagnostic.name().to_owned(), vec![0.0; window.pixels()]))
+        let diagnostics = plan.diagnostics.iter().map(|diagnostic| diagnostic.name());
+        let extras = plan.extras.iter().flat_map(|extra| extra.channels().iter().copied());
+        film.extra = diagnostics
+            .chain(extras)
+            .map(|name| (name.to_owned(), vec![0.0; window.pixels()]))
             .collect();
         Self { film, origin: plan.cloud.origin, tests: 0, hits: 0, rays: Rays::default() }
     }
@@ -103,8 +104,17 @@ impl Picture {
                 film.depth[at] = depth;
                 film.normal[at] = [nx, ny, nz];
                 film.object[at] = object;
-                for (diagnostic, (_, plane)) in plan.diagnostics.iter().zip(&mut film.extra) {
+                let mut planes = film.extra.iter_mut();
+                for (diagnostic, (_, plane)) in plan.diagnostics.iter().zip(&mut planes) {
                     plane[at] = diagnostic.value(pixel, fitted);
+                }
+                for extra in &plan.extras {
+                    let values = extra.values(pixel, self.origin);
+                    for (value, (_, plane)) in
+                        values[..extra.channels().len()].iter().zip(&mut planes)
+                    {
+                        plane[at] = *value;
+                    }
                 }
                 if object >= 0.0 {
                     self.hits += 1;

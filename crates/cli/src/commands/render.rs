@@ -1,7 +1,7 @@
 //! `render`: from a scene or a point file to pictures.
 
 use crate::ahead::Ahead;
-use crate::args::RenderArgs;
+use crate::args::{Channels, RenderArgs};
 use crate::engine::{Built, Engine, Frame, with_engine};
 use crate::errors::Failure;
 use crate::input::{Input, SceneValues};
@@ -9,7 +9,7 @@ use crate::progress::Progress;
 use crate::stats::{Measured, Row};
 use crate::{files, interrupt, memory, provenance};
 use film::{FileFormat, Film, Provenance, Style, Tone};
-use plan::{Diagnostic, Plan};
+use plan::{Diagnostic, Extra, Plan};
 use points::Watch;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -34,13 +34,13 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         values.add_columns(&args.scene, columns)?;
     }
     let mut input = Input::load(&args.scene, &values, args.up)?.colored_by(args.color.clone())?;
-    let diagnostics = diagnostics(args, &formats);
-    memory::require_picture(input.window(args.crop)?, &formats, diagnostics.len())?;
+    let added = Added::of(args, &formats);
+    memory::require_picture(input.window(args.crop)?, &formats, added.planes())?;
     files::check_distinct(&outputs, &input.files())?;
     let progress = Progress::new(&args.progress);
-    if diagnostics.is_empty() && !args.channels.is_empty() {
+    if added.planes() == 0 && !args.channels.is_empty() {
         progress.warn(
-            "--channels is ignored, since only EXR files hold diagnostic channels; add \
+            "--channels is ignored, since only EXR files hold further channels; add \
              -o FILE.exr",
         );
     }
@@ -53,19 +53,39 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if args.half && !formats.contains(&FileFormat::Exr) {
         progress.warn("--half is ignored, since it is for EXR files; add -o FILE.exr");
     }
-    with_engine(&args.device, |engine| render(args, &mut input, diagnostics, engine, &progress))
+    with_engine(&args.device, |engine| render(args, &mut input, added, engine, &progress))
 }
 
-/// The diagnostics that were asked for, each once, where a file can hold them.
-fn diagnostics(args: &RenderArgs, formats: &[FileFormat]) -> Vec<Diagnostic> {
-    let held = formats.contains(&FileFormat::Exr);
-    Diagnostic::ALL.into_iter().filter(|asked| held && args.channels.contains(asked)).collect()
+/// What `--channels` adds.
+struct Added {
+    diagnostics: Vec<Diagnostic>,
+    extras: Vec<Extra>,
+}
+
+impl Added {
+    /// What was asked for, each once, where a file can hold it.
+    fn of(args: &RenderArgs, formats: &[FileFormat]) -> Self {
+        let held = formats.contains(&FileFormat::Exr);
+        let is_asked = |channels| held && args.channels.contains(&channels);
+        let diagnostics = Diagnostic::ALL.into_iter();
+        let extras = Extra::ALL.into_iter();
+        Self {
+            diagnostics: diagnostics.filter(|&one| is_asked(Channels::Diagnostic(one))).collect(),
+            extras: extras.filter(|&one| is_asked(Channels::Extra(one))).collect(),
+        }
+    }
+
+    /// How many channels these are.
+    fn planes(&self) -> usize {
+        let extras = self.extras.iter().map(|extra| extra.channels().len());
+        self.diagnostics.len() + extras.sum::<usize>()
+    }
 }
 
 fn render(
     args: &RenderArgs,
     input: &mut Input,
-    diagnostics: Vec<Diagnostic>,
+    added: Added,
     engine: &Engine,
     progress: &Progress,
 ) -> Result<(), Failure> {
@@ -77,7 +97,7 @@ fn render(
     let dropped: u64 = sets.iter().map(|set| set.dropped()).sum();
     let filtered_out = sets.iter().map(|set| set.filtered_out).sum();
     let mut plan = input.plan(&sets, args.crop, progress)?;
-    plan.diagnostics = diagnostics;
+    (plan.diagnostics, plan.extras) = (added.diagnostics, added.extras);
     ahead.picture(&plan);
     for (name, count) in plan.names.iter().zip(&plan.isolated).filter(|(_, count)| **count > 0) {
         progress.note(&format!("object '{name}': dropped {count} isolated points"));

@@ -90,7 +90,7 @@ fn options_that_set_scene_values_are_named_as_typed() {
 
 #[test]
 fn channels_are_named_in_the_help_and_where_one_is_unknown() {
-    const NAMES: [&str; 6] = ["point", "tests", "cells", "iterations", "trust", "fit"];
+    const NAMES: [&str; 7] = ["point", "tests", "cells", "iterations", "trust", "fit", "world"];
     let folder = Folder::new();
     folder.write("a.ply", &sphere(10));
     let render =
