@@ -44,7 +44,8 @@ void main() {
     vec2 place = vec2(0.5); // of a light: its centre, unless it is sampled
     if (scene_has(SCENE_SAMPLES)) {
         uvec2 pixel = params.tile_origin + uvec2(tile_at % params.tile_size.x, tile_at / params.tile_size.x);
-        place = sample_2d(pixel, params.sample_index, params.seed, uint(SAMPLE_LIGHT) + params.light);
+        vec2 drawn = sample_2d(pixel, params.sample_index, params.seed, uint(SAMPLE_LIGHT) + params.light);
+        place = params.sample_index == NONE ? place : drawn; // of the pixel's centre: the centre
     }
     LightSample light = sample_light(lights[params.light], hit.position, place);
     vec3 arriving = light.arriving * max(dot3(hit.normal, light.towards), 0.0);

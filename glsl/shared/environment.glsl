@@ -10,7 +10,7 @@
 #define INVERSE_TURN 0.159154943 // 1 / 2 pi
 #define INVERSE_HALF_TURN 0.318309886
 
-// The colour of an equirectangular image in a direction of any length: +y is its top row, -z its
+// The colour of an equirectangular image in a direction of its own frame, of any length: +y is its top row, -z its
 // middle, +x right of that. The angle from +y is not by the arc cosine, which loses digits at the poles.
 vec3 environment(ImageInfo image, vec3 direction) {
     float level = sqrt(direction.x * direction.x + direction.z * direction.z);
@@ -19,9 +19,22 @@ vec3 environment(ImageInfo image, vec3 direction) {
     return image_at(image, u, v, true);
 }
 
+// What a direction of the world is in the environment's own frame: three rows, which lie after the environment
+// among the images.
+vec3 turned(uint at, vec3 direction) {
+    ImageInfo x = images[at + 1u], y = images[at + 2u], z = images[at + 3u];
+    return vec3(dot3(uintBitsToFloat(uvec3(x.first, x.width, x.height)), direction),
+                dot3(uintBitsToFloat(uvec3(y.first, y.width, y.height)), direction),
+                dot3(uintBitsToFloat(uvec3(z.first, z.width, z.height)), direction));
+}
+
 vec3 background_at(BackgroundInfo background, vec3 direction) {
     vec3 color = background.color;
-    if (scene_has(SCENE_ENVIRONMENT)) color = environment(images[background.environment], direction);
+    if (scene_has(SCENE_ENVIRONMENT)) {
+        vec3 own = direction;
+        if (scene_has(SCENE_TURNED)) own = turned(background.environment, direction);
+        color = environment(images[background.environment], own);
+    }
     return color;
 }
 #endif

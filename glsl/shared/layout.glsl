@@ -185,6 +185,7 @@
 #define SCENE_LEVELS 262144 // several grids
 #define SCENE_SHAPES 524288 // some points are spheres or discs
 #define SCENE_SPHERES 1048576 // some are spheres
+#define SCENE_TURNED 2097152 // the environment is turned
 
 // What transparent pictures leave the background out of.
 #define TRANSPARENT_CAMERA 1 // camera rays
@@ -528,7 +529,8 @@ struct WaveParams {      // 80 bytes
     uint transparent;    // 76  TRANSPARENT_*, or 0: nothing leaves the background out
 };
 
-// An image whose texels lie in rows, the top row first.
+// An image whose texels lie in rows, the top row first. After that of an environment come three whose first three
+// words are the bits of a row of the matrix that turns it.
 struct ImageInfo {       // 16 bytes
     uint first;          //  0  word of its first texel in texels
     uint width;          //  4

@@ -303,7 +303,7 @@ fn every_color_is_the_same_to_the_bit() {
     let bench = Bench::open();
     for transparent in [false, true] {
         let plan = everything(transparent);
-        assert_eq!(plan.images.len(), 3, "each image once");
+        assert_eq!(plan.image_files.len(), 3, "each image once");
         let on_device = bench.render(&plan);
         assert_same_bits("everything", &on_device, &render_twin(&plan));
         let film = on_device.film;
@@ -352,8 +352,13 @@ fn cameras_see_the_environment_where_they_look() {
             [0.0, 1.0, 0.0],
             [0.5 + (0.1f64).atan2(-1.0) / std::f64::consts::TAU, 0.5],
         ),
-        ([0.0, 1.0, -1e-2], [0.0, 0.0, 1.0], [0.5, (1e-2f64).atan() / std::f64::consts::PI]),
-        ([0.0, -1.0, -1e-2], [0.0, 0.0, 1.0], [0.5, 1.0 - (1e-2f64).atan() / std::f64::consts::PI]),
+        // Up is no axis there: what is looked up is the direction itself.
+        ([0.0, 1.0, -1e-2], [0.0, 1e-3, 1.0], [0.5, (1e-2f64).atan() / std::f64::consts::PI]),
+        (
+            [0.0, -1.0, -1e-2],
+            [0.0, 1e-3, 1.0],
+            [0.5, 1.0 - (1e-2f64).atan() / std::f64::consts::PI],
+        ),
     ] {
         let text = format!(
             "[camera]\neye = [5.0, 2.0, 1.0]\ntarget = {:?}\nup = {up:?}\nvertical_fov = 10.0\n\

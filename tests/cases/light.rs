@@ -177,39 +177,3 @@ material = {{ kind = \"glass\", ior = 1.5, priority = 3 }}
     let differing = (0..alone.color.len()).filter(far).count();
     assert!(differing <= 3, "{differing} pixels show a surface that changes no medium");
 }
-
-/// A camera inside a glass ball whose points have normals knows that it is inside: its rays see the uniform
-/// background dimmed by what the way to the surface absorbs. Without normals they start outside.
-#[test]
-fn given_normals_say_that_the_camera_is_inside() {
-    let text = "
-[camera]
-eye = [0.3, 0.1, 0.2]
-target = [0.0, 0.0, -1.0]
-[image]
-size = [64, 48]
-[background]
-color = [1.0, 1.0, 1.0]
-[[objects]]
-points = \"a.ply\"
-material = { kind = \"glass\", ior = 1.00001, absorption = [0.5, 1.0, 2.0] }
-";
-    let mut set = set_of(fibonacci_sphere(10_000));
-    let bench = Bench::open();
-    let outside = bench.render(&plan_of(text, &[set.clone()]));
-    set.normals = Some(set.positions.iter().map(|p| p.map(|x| x as f32)).collect());
-    let plan = plan_of(text, &[set]);
-    let inside = bench.render(&plan);
-    assert_same_bits("inside", &inside, &render_twin(&plan));
-    for (at, color) in inside.film.color.iter().enumerate() {
-        let p = inside.film.position[at].map(f64::from);
-        let way = ((p[0] - 0.3).powi(2) + (p[1] - 0.1).powi(2) + (p[2] - 0.2).powi(2)).sqrt();
-        for (channel, absorption) in [0.5, 1.0, 2.0].into_iter().enumerate() {
-            // The distance errs by a few roundings of the distance, 1e-6.
-            let expected = (-absorption * way).exp();
-            assert!((f64::from(color[channel]) - expected).abs() < 1e-5, "{at}: {color:?}");
-        }
-    }
-    // Taken for outside, the ray enters at that surface and never leaves: everything is absorbed.
-    assert!(outside.film.color.iter().all(|color| color[2] == 0.0));
-}

@@ -363,6 +363,9 @@ impl Input {
         for warning in &plan.coarse {
             progress.warn(&format!("{warning}"));
         }
+        for doubt in &plan.doubts {
+            progress.warn(doubt);
+        }
         for (object, apart) in &plan.apart {
             let file = self.scene.objects[*object].points.display();
             progress.warn(&format!("{file}: {apart}"));

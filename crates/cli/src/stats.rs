@@ -259,7 +259,7 @@ impl Row {
             passes: frame.passes,
             tests_per_ray: frame.tests as f64 / frame.rays.all().max(1) as f64,
             bytes_per_point: (built.bytes() + plan.volumes.bytes()) as f64 / points.max(1) as f64,
-            pixels: pixel_hash(&frame.film),
+            pixels: pixel_hash(&frame.film, plan.samples),
             device: engine.name(),
             driver: engine.driver(),
             points,
@@ -337,16 +337,17 @@ impl Fits {
     }
 }
 
-/// The first 64 bits of a SHA-256 over the bits of R, G, B, A, Z, N and object.
-pub fn pixel_hash(film: &Film) -> String {
+/// The first 64 bits of a SHA-256 over the bits of R, G, B, A and, of pictures with one sample a pixel, of Z, N and
+/// object: with several, these depend on whether a file wants them.
+pub fn pixel_hash(film: &Film, samples: u32) -> String {
     let mut hash = Sha256::new();
     let mut bytes = Vec::with_capacity(9 * 4 * film.window.width as usize);
     for (at, color) in film.color.iter().enumerate() {
         let [r, g, b, a] = *color;
         let [nx, ny, nz] = film.normal[at];
-        for value in [r, g, b, a, film.depth[at], nx, ny, nz, film.object[at]] {
-            bytes.extend(value.to_le_bytes());
-        }
+        let values = [r, g, b, a, film.depth[at], nx, ny, nz, film.object[at]];
+        let hashed = if samples > 1 { &values[..4] } else { &values };
+        bytes.extend(hashed.iter().flat_map(|value| value.to_le_bytes()));
         if (at + 1).is_multiple_of(film.window.width as usize) {
             hash.update(&bytes);
             bytes.clear();
@@ -373,9 +374,10 @@ mod tests {
     #[test]
     fn any_plane_changes_the_hash() {
         let film = || Film::empty([4, 4], film::Window { x: 1, y: 1, width: 3, height: 2 }, false);
-        let hash = pixel_hash(&film());
+        let hash = pixel_hash(&film(), 1);
         assert_eq!(hash.len(), 16);
-        assert_eq!(hash, pixel_hash(&film()));
+        assert_eq!(hash, pixel_hash(&film(), 1));
+        let of_several = pixel_hash(&film(), 2);
         for change in [
             |film: &mut Film| film.color[5][3] = 1.0,
             |film: &mut Film| film.depth[0] = 1.0,
@@ -384,7 +386,9 @@ mod tests {
         ] {
             let mut changed = film();
             change(&mut changed);
-            assert_ne!(hash, pixel_hash(&changed));
+            assert_ne!(hash, pixel_hash(&changed, 1));
+            let is_color = changed.color != film().color;
+            assert_eq!(of_several != pixel_hash(&changed, 2), is_color);
         }
     }
 }

@@ -344,6 +344,8 @@ constants! {
     SCENE_SHAPES = 524_288;
     /// Some are drawn as spheres.
     SCENE_SPHERES = 1_048_576;
+    /// The environment is turned.
+    SCENE_TURNED = 2_097_152;
     /// Grids of a scene, at most.
     MOST_LEVELS = 16;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
@@ -1027,7 +1029,8 @@ gpu_layout!(WaveParams, 80, {
     transparent: 76,
 });
 
-/// An image whose texels lie in rows, the top row first.
+/// An image whose texels lie in rows, the top row first. After that of an environment come three whose first three
+/// words are the bits of a row of the matrix that turns it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ImageInfo {

@@ -1,7 +1,7 @@
 //! How rays find their hits: primary ones by discs (\[T\] §4), and how the points of a screen tile are ordered; through
 //! the tree; through the grid.
 
-use crate::{Diagnostic, Plan, Primary, RayLoop, Secondary, Window};
+use crate::{CENTER, Diagnostic, Plan, Primary, RayLoop, Secondary, Window};
 use kernels::layout::{
     CameraParams, CameraTraceParams, DISC_TILE, DepthRanks, DiscParams, PERSPECTIVE, TreeInfo,
 };
@@ -25,10 +25,10 @@ const POINTS_PER_PIXEL_TO_TREE: f64 = 2.0;
 const FEWEST_PIXELS: usize = 32_768;
 
 impl Plan {
-    /// Whether all camera rays start from the eye and go through their pixel's centre, one each.
+    /// Whether all camera rays of a sample start from the eye and go through their pixel's centre.
     #[must_use]
-    pub fn looks_through_centers(&self) -> bool {
-        self.samples == 1 && self.camera.projection == PERSPECTIVE
+    pub fn looks_through_centers(&self, sample: u32) -> bool {
+        (self.samples == 1 || sample == CENTER) && self.camera.projection == PERSPECTIVE
     }
 
     /// Whether the camera rays of a tile of the picture are to find their first hit by discs: where they go through
@@ -36,7 +36,7 @@ impl Plan {
     #[must_use]
     pub fn by_discs(&self, tile: &Window) -> bool {
         match self.primary {
-            _ if !self.looks_through_centers() => false,
+            _ if !self.looks_through_centers(0) => false,
             Primary::Discs => true,
             Primary::Grid | Primary::Tree => false,
             Primary::Auto => self.discs_are_faster(tile) && !self.is_about_cells(),
@@ -78,8 +78,13 @@ impl Plan {
 
     /// Whether somebody wants to see the grid at work.
     fn is_about_cells(&self) -> bool {
+        self.cells_per_pass != 0 || self.counts_work()
+    }
+
+    /// Whether a diagnostic counts what all rays of a pixel do.
+    pub(crate) fn counts_work(&self) -> bool {
         let counts = [Diagnostic::Tests, Diagnostic::Cells];
-        self.cells_per_pass != 0 || self.diagnostics.iter().any(|shown| counts.contains(shown))
+        self.diagnostics.iter().any(|shown| counts.contains(shown))
     }
 
     /// Parameters of `disc_count` for one tile of the picture. The grids say where the points are.

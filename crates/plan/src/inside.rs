@@ -1,67 +1,210 @@
-//! Which media the camera is in, where given normals or spheres say so (docs/method.md, section 6).
+//! Which media the camera is in (docs/method.md, section 6).
 //!
-//! Rays start outside of everything, and hits tell what they enter and leave: a ray alone cannot know
-//! that it began inside. Normals of a file point outwards, so the points nearest to the eye know; of an object of
-//! spheres, each of them does.
+//! Rays start outside of everything, and hits say what they enter and leave: a ray alone cannot know that it began
+//! inside. What is inside is what `camera.inside` says. Else spheres know, an isosurface's scalar does, normals of a file
+//! point outwards, and around the eye the surfaces can be counted ([`crate::crossings`]).
 
 use crate::bulk::World;
-use kernels::layout::MEDIA_WORDS;
+use crate::crossings::{Votes, votes};
+use crate::shapes::surface_slots;
+use crate::volumes::Volumes;
+use kernels::layout::{MEDIA_WORDS, VOLUME_ISOSURFACE, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo};
 use points::{Cloud, PointSet, ShapeKind, Shapes};
-use scene::{MaterialKind, Object, Scene, SurfaceKind};
+use scene::{MaterialKind, Scene, SurfaceKind};
+use std::ops::Range;
 use std::sync::Arc;
 
-/// Points asked: one normal alone may be wrong.
+/// Points whose normals are asked: one normal alone may be wrong.
 const ASKED: usize = 8;
 
-/// The objects of glass that the eye is inside, as many as a path can hold; those of spheres once for each sphere.
-/// `world` has the points of each object in the world.
-pub(crate) fn media_of_eye(
-    scene: &Scene,
-    sets: &[Arc<PointSet>],
-    world: &[World],
-    (cloud, shapes): (&Cloud, &[Shapes]),
-    eye: [f64; 3],
-) -> Vec<u32> {
-    let is_glass = |object: &Object| matches!(object.material.kind, MaterialKind::Glass { .. });
-    let spheres = (shapes.iter())
-        .filter(|shapes| shapes.kind == ShapeKind::Sphere)
-        .filter(|shapes| is_glass(&scene.objects[shapes.object as usize]))
-        .flat_map(|shapes| {
-            let points = &cloud.points[shapes.slots().range()];
-            let holds = points.iter().zip(&shapes.radii).filter(|(point, radius)| {
-                let from =
-                    |axis: usize| eye[axis] - cloud.origin[axis] - f64::from(point.position[axis]);
-                let square: f64 = [0, 1, 2].map(|axis| from(axis) * from(axis)).iter().sum();
-                square < f64::from(**radius) * f64::from(**radius)
-            });
-            holds.map(|_| shapes.object)
-        });
-    let inside = scene.objects.iter().zip(sets).zip(world).zip(0u32..).filter_map(
-        |(((object, set), positions), index)| {
-            let by_normals =
-                is_glass(object) && !matches!(object.surface.kind, SurfaceKind::Spheres(_));
-            let normals = set.normals.as_ref().filter(|_| by_normals)?;
-            let turned = |i: usize| object.transform.rotate(normals[i].map(f64::from));
-            is_inside(positions, turned, eye).then_some(index)
-        },
-    );
-    inside.chain(spheres).take(2 * MEDIA_WORDS as usize).collect()
+/// What is known of the points of a scene.
+pub(crate) struct Known<'a> {
+    pub sets: &'a [Arc<PointSet>],
+    /// The points of each object in the world.
+    pub world: &'a [World],
+    pub cloud: &'a Cloud,
+    pub shapes: &'a [Shapes],
+    pub volumes: &'a Volumes,
 }
 
-/// Whether most of the nearest points have the eye behind them.
-fn is_inside(positions: &[[f64; 3]], normal: impl Fn(usize) -> [f64; 3], eye: [f64; 3]) -> bool {
+/// The objects of glass that the eye is inside, as many as a path can hold, those of spheres once for each sphere; and
+/// what is in doubt, a sentence each.
+pub(crate) fn media_of_eye(
+    scene: &Scene,
+    known: &Known<'_>,
+    eye: [f64; 3],
+) -> (Vec<u32>, Vec<String>) {
+    let (mut media, mut spheres, mut doubts) = (Vec::new(), Vec::new(), Vec::new());
+    for (object, index) in scene.objects.iter().zip(0u32..) {
+        if !matches!(object.material.kind, MaterialKind::Glass { .. }) {
+            continue;
+        }
+        let held = spheres_around(known, index, eye);
+        if let Some(names) = &scene.inside {
+            if names.contains(&object.name) {
+                media.push(index);
+                spheres.extend((1..held).map(|_| index));
+            }
+            continue;
+        }
+        spheres.extend((0..held).map(|_| index));
+        if matches!(object.surface.kind, SurfaceKind::Spheres(_)) {
+            continue;
+        }
+        let (inside, doubt) = match above_isosurface(known.volumes, index, local(known, eye)) {
+            Some(above) => (above, None),
+            None => by_surface(scene, known, index, eye),
+        };
+        media.extend(inside.then_some(index));
+        doubts.extend(doubt);
+    }
+    media.extend(spheres);
+    media.truncate(2 * MEDIA_WORDS as usize);
+    (media, doubts)
+}
+
+/// The eye in the kernels' coordinates.
+fn local(known: &Known<'_>, eye: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| eye[axis] - known.cloud.origin[axis])
+}
+
+/// How many spheres of an object hold the eye.
+fn spheres_around(known: &Known<'_>, object: u32, eye: [f64; 3]) -> usize {
+    let eye = local(known, eye);
+    let own = |shapes: &&Shapes| shapes.kind == ShapeKind::Sphere && shapes.object == object;
+    let around = |shapes: &Shapes| {
+        let points = &known.cloud.points[shapes.slots().range()];
+        let holds = points.iter().zip(&shapes.radii).filter(|(point, radius)| {
+            let from = |axis: usize| eye[axis] - f64::from(point.position[axis]);
+            let square: f64 = [0, 1, 2].map(|axis| from(axis) * from(axis)).iter().sum();
+            square < f64::from(**radius) * f64::from(**radius)
+        });
+        holds.count()
+    };
+    known.shapes.iter().filter(own).map(around).sum()
+}
+
+/// Whether the scalar of an object's isosurface is over its number at a place in the kernels' coordinates; `None` where
+/// it has no isosurface.
+fn above_isosurface(volumes: &Volumes, object: u32, place: [f64; 3]) -> Option<bool> {
+    let own =
+        |of: &(&VolumeInfo, Range<usize>)| of.0.object == object && of.0.mode == VOLUME_ISOSURFACE;
+    let (info, range) = volumes.point_ranges().find(own)?;
+    let (mut numerator, mut denominator) = (0.0, 0.0);
+    for at in range {
+        let point = &volumes.points[at];
+        let square: f64 =
+            (0..3).map(|axis| (f64::from(point.position[axis]) - place[axis]).powi(2)).sum();
+        let weight = if info.kernel == VOLUME_SPH {
+            let q = square.sqrt() * f64::from(volumes.inverse_lengths[at]);
+            0.25 * (2.0 - q).max(0.0).powi(3) - (1.0 - q).max(0.0).powi(3)
+        } else if square <= f64::from(info.square_radius) {
+            (-square * f64::from(info.inverse_width)).exp()
+        } else {
+            0.0
+        };
+        numerator += weight * f64::from(point.scalar);
+        denominator += weight;
+    }
+    if info.kernel == VOLUME_SHEPARD {
+        return Some(denominator > 0.0 && numerator / denominator > f64::from(info.iso));
+    }
+    Some(numerator > f64::from(info.iso))
+}
+
+/// Whether the eye is inside an object's surface, by its normals where it has any, else by what lines from the eye
+/// cross; and what is in doubt.
+fn by_surface(
+    scene: &Scene,
+    known: &Known<'_>,
+    index: u32,
+    eye: [f64; 3],
+) -> (bool, Option<String>) {
+    let at = index as usize;
+    let (object, positions) = (&scene.objects[at], &known.world[at]);
+    let of_normals = known.sets[at].normals.as_ref().and_then(|normals| {
+        let turned = |i: usize| object.transform.rotate(normals[i].map(f64::from));
+        side_of_normals(positions, turned, eye)
+    });
+    let counted = || {
+        let surface = surface_slots(known.cloud, known.shapes, at);
+        let slots = if surface.count > 0 { surface } else { known.cloud.objects[at] };
+        votes(&known.cloud.points[slots.range()], local(known, eye))
+    };
+    match of_normals {
+        // Far outside nearly every eye is where normals look.
+        Some(false) if !may_hold(positions, eye) => (false, None),
+        Some(inside) => {
+            let votes = counted();
+            let agrees = !votes.is_clear() || votes.says_inside() == inside;
+            let doubt = (!agrees).then(|| against_normals(&object.name, inside, votes));
+            (if agrees { inside } else { !inside }, doubt)
+        }
+        None => {
+            let votes = counted();
+            let inside = votes.says_inside();
+            (inside, (!votes.is_clear()).then(|| divided(&object.name, inside, votes)))
+        }
+    }
+}
+
+/// Whether a place is in the box around these points.
+fn may_hold(positions: &[[f64; 3]], place: [f64; 3]) -> bool {
+    points::bounds_of([positions]).is_some_and(|[low, high]| {
+        (0..3).all(|axis| (low[axis]..=high[axis]).contains(&place[axis]))
+    })
+}
+
+fn side(inside: bool) -> &'static str {
+    if inside { "inside" } else { "outside" }
+}
+
+fn advice(name: &str) -> String {
+    format!("say which, camera.inside = \"{name}\" or camera.inside = []")
+}
+
+fn against_normals(name: &str, inside: bool, votes: Votes) -> String {
+    format!(
+        "object '{name}': by its normals the eye is {} this glass, but {} of {} lines from the eye cross its surface as \
+         often as from {} it, and it is taken to be there; {}",
+        side(inside),
+        votes.inside.max(votes.outside),
+        votes.inside + votes.outside,
+        side(!inside),
+        advice(name)
+    )
+}
+
+fn divided(name: &str, inside: bool, votes: Votes) -> String {
+    format!(
+        "object '{name}': whether the eye is inside this glass is in doubt, as where a surface is open or has holes: {} \
+         lines from the eye say so, {} deny it, and it is taken to be {}; {}",
+        votes.inside,
+        votes.outside,
+        side(inside),
+        advice(name)
+    )
+}
+
+/// Whether most of the nearest points have the eye behind them; `None` where their normals say nothing.
+fn side_of_normals(
+    positions: &[[f64; 3]],
+    normal: impl Fn(usize) -> [f64; 3],
+    eye: [f64; 3],
+) -> Option<bool> {
     let from = |i: usize| [0, 1, 2].map(|axis| eye[axis] - positions[i][axis]);
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let mut nearest: Vec<(f64, usize)> =
         (0..positions.len()).map(|i| (dot(from(i), from(i)), i)).collect();
     let count = ASKED.min(nearest.len());
     if count == 0 {
-        return false;
+        return None;
     }
     nearest.select_nth_unstable_by(count - 1, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     // A normal that is no number, or zero, has no say.
     let votes = nearest[..count].iter().map(|&(_, i)| dot(from(i), normal(i)));
-    votes.map(|side| i32::from(side < 0.0) - i32::from(side > 0.0)).sum::<i32>() > 0
+    let signs: Vec<i32> = votes.map(|side| i32::from(side < 0.0) - i32::from(side > 0.0)).collect();
+    signs.iter().any(|&sign| sign != 0).then(|| signs.iter().sum::<i32>() > 0)
 }
 
 #[cfg(test)]
@@ -83,17 +226,18 @@ mod tests {
         let ball = ball();
         let outwards = |i: usize| ball[i];
         let inwards = |i: usize| ball[i].map(|x| -x);
-        assert!(is_inside(&ball, outwards, [0.1, 0.2, -0.3]));
-        assert!(!is_inside(&ball, outwards, [0.0, 1.2, 0.0]));
-        assert!(!is_inside(&ball, inwards, [0.1, 0.2, -0.3]));
-        assert!(!is_inside(&ball, |_| [f64::NAN; 3], [0.0; 3]), "no number");
-        assert!(!is_inside(&[], outwards, [0.0; 3]), "no points");
+        assert_eq!(side_of_normals(&ball, outwards, [0.1, 0.2, -0.3]), Some(true));
+        assert_eq!(side_of_normals(&ball, outwards, [0.0, 1.2, 0.0]), Some(false));
+        assert_eq!(side_of_normals(&ball, inwards, [0.1, 0.2, -0.3]), Some(false));
+        assert_eq!(side_of_normals(&ball, |_| [f64::NAN; 3], [0.0; 3]), None, "no number");
+        assert_eq!(side_of_normals(&[], outwards, [0.0; 3]), None, "no points");
     }
 
     #[test]
     fn one_wrong_normal_is_outvoted() {
         let ball = ball();
         let one_wrong = |i: usize| if i == 250 { ball[i].map(|x| -x) } else { ball[i] };
-        assert!(is_inside(&ball, one_wrong, ball[250].map(|x| 0.9 * x)));
+        let found = side_of_normals(&ball, one_wrong, ball[250].map(|x| 0.9 * x));
+        assert_eq!(found, Some(true));
     }
 }

@@ -8,10 +8,12 @@
 mod bulk;
 mod camera;
 mod colors;
+mod crossings;
 mod degrees;
 mod denoise;
 mod diagnostic;
 mod discs;
+mod environment;
 mod error;
 mod extra;
 mod filter;
@@ -52,8 +54,8 @@ use kernels::layout::{
     MATERIAL_GLASS, MEDIA_WORDS, NONE, ObjectInfo, SCENE_ABSORBS, SCENE_ALPHA, SCENE_BLENDS,
     SCENE_CHANCE, SCENE_DIAGNOSTICS, SCENE_DIFFUSE, SCENE_DISPERSES, SCENE_ENVIRONMENT,
     SCENE_LIGHTS, SCENE_MANY_LIGHTS, SCENE_NESTED, SCENE_REFINES, SCENE_SAMPLES, SCENE_SCATTERS,
-    SCENE_SHAPES, SCENE_SPHERES, SCENE_TEXTURES, SCENE_VALUES, SCENE_VOLUMES, TRANSPARENT_CAMERA,
-    TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
+    SCENE_SHAPES, SCENE_SPHERES, SCENE_TEXTURES, SCENE_TURNED, SCENE_VALUES, SCENE_VOLUMES,
+    TRANSPARENT_CAMERA, TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
 };
 use lights::local_light;
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
@@ -64,6 +66,8 @@ use std::sync::Arc;
 
 /// Columns of a tile at most: a row of the ray state's images.
 const TILE_WIDTH: u32 = layout::STATE_ROW;
+/// In place of a sample's number: the ray through a pixel's centre, where there are several samples beside it.
+pub const CENTER: u32 = NONE;
 /// Rays of a wave at most: their state is 128 MiB.
 const WAVE_RAYS: u32 = 1 << 20;
 /// Sides of the blocks of pixels whose rays lie together.
@@ -144,6 +148,8 @@ pub struct Plan {
     pub projection: Option<MapProjection>,
     /// Where steps of 32 bits are coarse beside the distances of points, one sentence an object and cause.
     pub coarse: Vec<String>,
+    /// Objects of glass of which it is in doubt whether the eye is inside, one sentence each.
+    pub doubts: Vec<String>,
     /// How many isolated points each object lost (`drop_isolated`).
     pub isolated: Vec<u64>,
     /// The strays of each object that has any, by its index.
@@ -156,6 +162,10 @@ pub struct Plan {
     pub diagnostics: Vec<Diagnostic>,
     /// What else the film is to have, each at most once. None at first.
     pub extras: Vec<Extra>,
+    /// Whether depth, position, normal, object and diagnostics of the film are wanted. Where a pixel has several samples
+    /// they are those of a ray of its own, through the pixel's centre and the lens's. True at first; otherwise they are
+    /// the first sample's, and that ray is saved.
+    pub aovs: bool,
     transparent: bool,
     channel_alpha: bool,
     provenance: film::Provenance,
@@ -248,8 +258,18 @@ impl Plan {
                 camera::frame(&world, bounds, image_size, up)
             }
         };
-        let camera_media =
-            inside::media_of_eye(scene, &bulk.sets, &bulk.world, (&cloud, &shapes), camera.eye);
+        if environment != NONE {
+            let turn = environment::turn(camera.up, scene.background.rotate);
+            list.infos.extend(environment::rows_of(&turn));
+        }
+        let known = inside::Known {
+            sets: &bulk.sets,
+            world: &bulk.world,
+            cloud: &cloud,
+            shapes: &shapes,
+            volumes: &volumes,
+        };
+        let (camera_media, doubts) = inside::media_of_eye(scene, &known, camera.eye);
         let view = View::new(&camera, image_size, cloud.origin);
         let lights =
             scene.lights.iter().map(|light| local_light(light, &camera, cloud.origin)).collect();
@@ -305,9 +325,11 @@ impl Plan {
             denoised: smoothed.found,
             projection,
             coarse,
+            doubts,
             missing,
             diagnostics: Vec::new(),
             extras: Vec::new(),
+            aovs: true,
             transparent: scene.image.transparent,
             channel_alpha,
             provenance: film::Provenance {
@@ -320,6 +342,19 @@ impl Plan {
             },
             cloud,
         })
+    }
+
+    /// Whether a pixel has a ray through its centre beside its samples.
+    #[must_use]
+    pub fn takes_centers(&self) -> bool {
+        self.aovs && self.samples > 1
+    }
+
+    /// Whether that ray is followed to its end, since somebody counts what the rays of a pixel do; otherwise to the first
+    /// surface.
+    #[must_use]
+    pub fn follows_centers(&self) -> bool {
+        self.counts_work()
     }
 
     /// Whether any object's hits are refined.
@@ -430,12 +465,19 @@ impl Plan {
             (SCENE_CHANCE, self.wave.fresnel != 0),
             (SCENE_VOLUMES, !self.volumes.infos.is_empty()),
             (SCENE_MANY_LIGHTS, self.lights.len() > 1),
+            (SCENE_TURNED, self.turns_environment()),
         ]
         .into_iter()
         .fold(0, |bits, (bit, is_set)| if is_set { bits | bit } else { bits })
     }
 
-    /// As kernels take it: the one sample of a pixel is none of a sequence.
+    /// Whether directions are turned before they are looked up in the environment.
+    fn turns_environment(&self) -> bool {
+        let at = self.wave.background.environment;
+        at != NONE && environment::turns(&self.images[at as usize + 1..][..3])
+    }
+
+    /// As kernels take it: the one sample of a pixel is none of a sequence, nor is [`CENTER`].
     fn sample_index(&self, sample: u32) -> u32 {
         if self.samples > 1 { sample } else { NONE }
     }

@@ -77,30 +77,36 @@ impl Picture {
     }
 
     /// Puts the pixels of one tile, row by row, where they belong. `plan` is the picture's own, and
-    /// `outcomes` says how its fits ended, by slot.
+    /// `outcomes` says how its fits ended, by slot. Surfaces and diagnostics are those of `centers`, the rays through the
+    /// pixels' centres, where the plan [takes](Plan::takes_centers) them.
     pub fn put(
         &mut self,
         plan: &Plan,
         outcomes: &[FitOutcome],
         tile: &Window,
-        pixels: &[FilmPixel],
+        (pixels, centers): (&[FilmPixel], Option<&[FilmPixel]>),
     ) {
         assert_eq!(pixels.len(), tile.pixels(), "one pixel for each of the tile");
+        let centers = centers.unwrap_or(pixels);
+        assert_eq!(centers.len(), tile.pixels(), "one centre for each pixel of the tile");
         assert_eq!(outcomes.len(), plan.cloud.points.len(), "one outcome a point");
         let fitted = Fitted { points: &plan.cloud.points, outcomes };
         let film = &mut self.film;
         let (x0, y0) = (tile.origin[0] - film.window.x, tile.origin[1] - film.window.y);
-        for (row, pixels) in (y0..).zip(pixels.chunks(tile.size[0] as usize)) {
+        let columns = tile.size[0] as usize;
+        for ((row, pixels), centers) in
+            (y0..).zip(pixels.chunks(columns)).zip(centers.chunks(columns))
+        {
             let first = row as usize * film.window.width as usize + x0 as usize;
-            for (at, pixel) in (first..).zip(pixels) {
+            for ((at, pixel), center) in (first..).zip(pixels).zip(centers) {
                 self.tests += u64::from(pixel.counts[0]);
-                let pixel = &seen(pixel);
-                let [x, y, z, depth] = pixel.position_depth;
-                let [nx, ny, nz, object] = pixel.normal_object;
                 film.color[at] = pixel.color;
                 if let Some(alpha) = &mut film.channel_alpha {
                     alpha[at] = pixel.alpha;
                 }
+                let pixel = &seen(center);
+                let [x, y, z, depth] = pixel.position_depth;
+                let [nx, ny, nz, object] = pixel.normal_object;
                 film.depth[at] = depth;
                 film.normal[at] = [nx, ny, nz];
                 film.object[at] = object;

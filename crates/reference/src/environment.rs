@@ -25,8 +25,23 @@ pub fn background_at<R: Real>(
 ) -> V3<R> {
     match background.environment {
         NONE => V3::of_f32(background.color),
-        at => environment(images, &images.infos[at as usize], direction),
+        at => {
+            let at = at as usize;
+            environment(images, &images.infos[at], turned(&images.infos[at + 1..at + 4], direction))
+        }
     }
+}
+
+/// What a direction of the world is in the environment's own frame.
+fn turned<R: Real>(rows: &[ImageInfo], direction: V3<R>) -> V3<R> {
+    let rows = [0, 1, 2].map(|i| {
+        let ImageInfo { first, width, height, .. } = rows[i];
+        [first, width, height].map(f32::from_bits)
+    });
+    if rows == [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+        return direction; // no turn: kernels leave it out
+    }
+    V3(rows.map(|row| V3::of_f32(row).dot(direction)))
 }
 
 #[cfg(test)]

@@ -51,7 +51,7 @@ use grid_build::CellLists;
 use grid_trace::grid_trace;
 use kernels::layout::{FilmPixel, FitOutcome, FitParams, VOLUME_LIGHTS};
 use levels::Levels;
-use plan::{Picture, Plan, Rays, Window};
+use plan::{CENTER, Picture, Plan, Rays, Window};
 use point_light::point_lights;
 use points::{Cloud, Grids, NeighborSearch, Rims, SlotRange, Watch, plan_grids};
 use polynomial::Polynomial;
@@ -218,7 +218,8 @@ impl<R: Real> Reference<R> {
     #[must_use]
     pub fn frame(&self, plan: &Plan, watch: &dyn Watch) -> Option<Picture> {
         let mut picture = plan.picture();
-        watch.stage("tracing", plan.window.pixels() as u64 * u64::from(plan.samples));
+        let samples = u64::from(plan.samples) + u64::from(plan.takes_centers());
+        watch.stage("tracing", plan.window.pixels() as u64 * samples);
         let mut done = 0;
         for tile in plan.tiles() {
             let discs = self.bin_discs(plan, &tile);
@@ -227,9 +228,12 @@ impl<R: Real> Reference<R> {
                     origin: [tile.origin[0], tile.origin[1] + first],
                     size: [tile.size[0], (ROWS as u32).min(tile.size[1] - first)],
                 };
+                let centers =
+                    plan.takes_centers().then(|| self.trace(plan, &rows, CENTER, discs.as_ref()).0);
+                done += if centers.is_some() { rows.pixels() as u64 } else { 0 };
                 let (pixels, traced) =
                     self.sampled(plan, &rows, discs.as_ref(), watch, &mut done)?;
-                picture.put(plan, &self.outcomes, &rows, &pixels);
+                picture.put(plan, &self.outcomes, &rows, (&pixels, centers.as_deref()));
                 picture.rays += traced;
             }
         }
@@ -271,7 +275,7 @@ impl<R: Real> Reference<R> {
     }
 
     /// One sample of the pixels of one window, row by row, and the rays that it took; through the grid, or, inside a tile of the
-    /// picture whose discs are given, by them.
+    /// picture whose discs are given, by them. [`CENTER`] is not followed beyond the first surface, unless the plan asks.
     #[must_use]
     pub fn trace(
         &self,
@@ -304,6 +308,7 @@ impl<R: Real> Reference<R> {
                     pixel: in_picture,
                     film: FilmPixel::zeroed(),
                     rays: Rays { camera: 1, ..Rays::default() },
+                    ends_at_first: sample == CENTER && !plan.follows_centers(),
                 };
                 let ray = camera_rays::camera_ray(&camera, &plan.filter, &levels, pixel);
                 trace.run(ray, discs);

@@ -51,6 +51,8 @@ pub(crate) struct PixelTrace<'a, R> {
     pub pixel: [u32; 2],
     pub film: FilmPixel,
     pub rays: Rays,
+    /// The camera ray is not followed beyond the first surface.
+    pub ends_at_first: bool,
 }
 
 impl<R: Real> PixelTrace<'_, R> {
@@ -84,6 +86,9 @@ impl<R: Real> PixelTrace<'_, R> {
                 iterations = 0;
             }
             self.account(&ray, hit.as_ref(), iterations, from_camera);
+            if self.ends_at_first {
+                return;
+            }
             self.interact(&ray, hit, path, from_camera, &mut rays);
             from_camera = false;
         }

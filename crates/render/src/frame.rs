@@ -27,7 +27,7 @@ use kernels::layout::{
     FilmPixel, Hit, NONE, ObjectInfo, Path, Polynomial, SCENE_BLENDS, SCENE_LEVELS, SCENE_SKIPS,
     WAVE_SHARES_PATH, WaveParams,
 };
-use plan::{MAX_DISC_PAIRS, Picture, Plan, Rays, Window, camera_wave};
+use plan::{CENTER, MAX_DISC_PAIRS, Picture, Plan, Rays, Window, camera_wave};
 use points::Watch;
 use points::device::{Needed, Surfaces};
 use std::sync::Arc;
@@ -311,15 +311,22 @@ impl Renderer {
     ) -> Result<(Picture, FrameStats), RenderError> {
         let mut picture = plan.picture();
         let mut stats = FrameStats::default();
-        watch.stage("tracing", plan.window.pixels() as u64 * u64::from(plan.samples));
-        let mut pixels =
-            vec![EMPTY_PIXEL; (self.film.bytes() / size_of::<FilmPixel>() as u64) as usize];
+        let samples = u64::from(plan.samples) + u64::from(plan.takes_centers());
+        watch.stage("tracing", plan.window.pixels() as u64 * samples);
+        let most = (self.film.bytes() / size_of::<FilmPixel>() as u64) as usize;
+        let mut pixels = vec![EMPTY_PIXEL; most];
+        let mut centers = vec![EMPTY_PIXEL; if plan.takes_centers() { most } else { 0 }];
         let made_before = self.device.pipeline_time();
         let started = Instant::now();
         self.light_points(plan, &mut stats, watch)?;
         stats.trace += started.elapsed();
         for tile in plan.tiles() {
             let started = Instant::now();
+            let mut centers = centers.get_mut(..tile.pixels());
+            if let Some(centers) = &mut centers {
+                self.trace_sample(plan, &tile, CENTER, &mut stats, watch)?;
+                self.film.read(0, centers)?;
+            }
             for sample in 0..plan.samples {
                 self.trace_sample(plan, &tile, sample, &mut stats, watch)?;
                 let [dark, reflected] = self.wave.read_tally()?;
@@ -330,7 +337,7 @@ impl Renderer {
             stats.trace += started.elapsed();
             let pixels = &mut pixels[..tile.pixels()];
             self.film.read(0, pixels)?;
-            picture.put(plan, &self.surfaces.outcomes, &tile, pixels);
+            picture.put(plan, &self.surfaces.outcomes, &tile, (pixels, centers.as_deref()));
         }
         stats.pipelines = self.device.pipeline_time().saturating_sub(made_before);
         stats.trace = stats.trace.saturating_sub(stats.pipelines);
@@ -338,7 +345,8 @@ impl Renderer {
     }
 
     /// One sample of a tile's pixels: the wave from the camera, and all that come of it. After the last
-    /// sample the film holds the mean of all.
+    /// sample the film holds the mean of all; after [`CENTER`], which is not followed beyond the first surface unless the
+    /// plan asks, what that ray saw.
     fn trace_sample(
         &mut self,
         plan: &Plan,
@@ -352,7 +360,9 @@ impl Renderer {
         self.recorder.fill(self.wave.tally(), 0, self.wave.tally().bytes(), 0);
         let by_discs = self.bin_discs(plan, tile, stats)?;
         let mut traced = if by_discs { Traced::ByDiscs(tile.size) } else { Traced::Camera };
+        let ends_at_first = sample == CENTER && !plan.follows_centers();
         match self.trace_at_once(plan, tile, &params, stats)? {
+            Some(_) if ends_at_first => params.ray_count = 0,
             Some(classes) => {
                 params.flags |= WAVE_SHARES_PATH;
                 self.go_on(plan, &mut params, classes, stats, watch)?;
@@ -365,12 +375,18 @@ impl Renderer {
             traced = if traced == Traced::Scattered { traced } else { Traced::Camera };
             self.settle_hits(plan, params.ray_count, traced, stats, watch)?;
             self.isosurfaces(plan, params.ray_count, false, stats, watch)?;
+            if ends_at_first {
+                self.classify(plan, &params, stats)?;
+                break;
+            }
             self.march(plan, params.ray_count, false, stats, watch)?;
             let classes = self.classify(plan, &params, stats)?;
             self.go_on(plan, &mut params, classes, stats, watch)?;
             traced = Traced::Scattered;
         }
-        self.samples.record(&mut self.recorder, &self.film, plan, tile, sample);
+        if sample != CENTER {
+            self.samples.record(&mut self.recorder, &self.film, plan, tile, sample);
+        }
         stats.add_kernels(&self.recorder.submit()?.passes);
         stats.rays += tile.pixels() as u64;
         watch.done(stats.rays);

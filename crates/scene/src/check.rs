@@ -272,6 +272,15 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
                 Ok(())
             }
         }
+        (Kind::Names(_), Value::Text(found)) if !found.trim().is_empty() => Ok(()),
+        (Kind::Names(_), Value::List(items)) => {
+            let is_name =
+                |item: &&Node| matches!(&item.value, Value::Text(name) if !name.trim().is_empty());
+            match items.iter().find(|item| !is_name(item)) {
+                Some(item) => Err(Wrong { origin: item.origin, ..by_example() }),
+                None => Ok(()),
+            }
+        }
         (Kind::List { of, max }, Value::List(items)) => {
             if items.is_empty() || items.len() > *max {
                 return Err(by_example());

@@ -98,6 +98,8 @@ pub(crate) enum Kind {
     Ranges(Numbers),
     /// A table of any names, each with a column's name or number; `_` with a list of numbers.
     Columns,
+    /// One name, or a list of names, which may be empty; what has them.
+    Names(&'static str),
 }
 
 /// A closed range and its unit, which may be empty.
@@ -218,6 +220,13 @@ pub(crate) static CAMERA: Table = Table {
             Words("the distance from eye to target", "3.0"),
             "Distance of the plane in focus from the eye, along the line of sight.",
         ),
+        key(
+            "inside",
+            Kind::Names("an object of glass"),
+            Words("found by normals, else by counting surfaces around the eye", "\"bottle\""),
+            "The glass that the eye is inside: an object's name, a list of names, or [] for none. Spheres \
+             count where they hold the eye.",
+        ),
     ],
 };
 
@@ -232,8 +241,8 @@ pub(crate) static IMAGE: Table = Table {
             count(1, 65_536, "rays a pixel"),
             Value("1"),
             "1 is one ray through each pixel's centre, without jitter. With more, the colours and `A` \
-             are means over rays about the centre, which smooths edges; `Z`, `P`, `N` and `object` are \
-             the first ray's.",
+             are means over rays about the centre, which smooths edges; `Z`, `P`, `N`, `object` and \
+             diagnostics are those of one more ray, through the centre.",
         ),
         key(
             "filter",
@@ -334,7 +343,17 @@ pub(crate) static BACKGROUND: Table = Table {
             Kind::Text("the path of an image"),
             Words("none", "\"sky.exr\""),
             "An equirectangular image (EXR or HDR; PNG and JPEG are decoded from sRGB) instead of \
-             `color`: +y is its top row, -z its middle, +x right of that.",
+             `color`. Its top is the camera's `up` where that is an axis, so that the horizon is level; a \
+             direction (x, y, z) is looked up as (x, y, z) for +y, (x, -y, -z) for -y, (x, z, -y) for +z, \
+             (x, -z, y) for -z, (-y, x, z) for +x, (y, -x, z) for -x, and as for +y where `up` is no axis. In \
+             what is looked up +y is the top row, -z the middle, +x right of that.",
+        ),
+        key(
+            "rotate",
+            Kind::Vector(numbers(-1e6, 1e6, "degrees")),
+            Value("[0.0, 0.0, 0.0]"),
+            "Turns the environment about the world's fixed axes x, then y, then z, right-handed, as \
+             `transform.rotate` turns an object.",
         ),
     ],
 };
@@ -923,6 +942,7 @@ impl Kind {
             Kind::Columns => {
                 "a table of names, each with a column's name or its number from 1".into()
             }
+            Kind::Names(of) => format!("the name of {of}, or a list of such names"),
         }
     }
 }

@@ -9,6 +9,7 @@
 mod check;
 mod document;
 mod error;
+mod inside;
 mod keys;
 mod load;
 mod models;

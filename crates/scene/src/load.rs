@@ -143,10 +143,13 @@ fn checked(document: &mut Node, folder: &Path, source: &Source<'_>) -> Result<Sc
     // What is wrong in a file of its own comes first: the scene is right if that is.
     problems.extend(crate::transfer_file::insert(document, folder)?);
     problems.extend(crate::check::check(document));
-    if problems.is_empty() {
-        Ok(scene(&Reader::new(&SCENE, Some(document)), folder))
-    } else {
-        Err(SceneError::problems(problems, source))
+    if !problems.is_empty() {
+        return Err(SceneError::problems(problems, source));
+    }
+    let scene = scene(&Reader::new(&SCENE, Some(document)), folder);
+    match crate::inside::problem(document, &scene) {
+        Some(problem) => Err(SceneError::problems(vec![problem], source)),
+        None => Ok(scene),
     }
 }
 
@@ -255,6 +258,7 @@ fn scene(file: &Reader<'_>, folder: &Path) -> Scene {
         camera: file
             .written("camera")
             .map(|node| Camera::read(&Reader::new(&keys::CAMERA, Some(node)))),
+        inside: file.table("camera", &keys::CAMERA).written("inside").map(crate::inside::names),
         image: ImageSettings::read(&file.table("image", &keys::IMAGE)),
         render: RenderSettings::read(&file.table("render", &keys::RENDER)),
         background: Background::read(&file.table("background", &keys::BACKGROUND), folder),
@@ -333,6 +337,7 @@ impl Background {
         Self {
             color: table.vector("color"),
             environment: ImageFile::read(table, "environment", folder),
+            rotate: table.vector("rotate"),
         }
     }
 }

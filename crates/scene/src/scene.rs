@@ -8,6 +8,8 @@ use std::path::PathBuf;
 /// What to render. Lengths are scene units, colours linear RGB with Rec. 709 primaries.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scene {
+    /// Names of the objects of glass that the eye is inside (`camera.inside`); `None`: the renderer finds out.
+    pub inside: Option<Vec<String>>,
     /// The view; `None` means that the renderer frames the objects.
     pub camera: Option<Camera>,
     /// Size and sampling of the picture.
@@ -153,6 +155,8 @@ pub struct Background {
     pub color: [f64; 3],
     /// An equirectangular image instead.
     pub environment: Option<ImageFile>,
+    /// How the environment is turned about the fixed x, y, z axes in that order, in degrees, each -1e6 to 1e6.
+    pub rotate: [f64; 3],
 }
 
 /// An image that the scene names.

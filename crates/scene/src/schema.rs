@@ -130,6 +130,10 @@ fn kind(of: &Kind, path: &str) -> Map<String, Json> {
         Kind::List { of, max } => as_map(json!({
             "type": "array", "items": kind(of, path), "minItems": 1, "maxItems": max,
         })),
+        Kind::Names(_) => {
+            let name = json!({ "type": "string", "minLength": 1 });
+            as_map(json!({ "anyOf": [name, { "type": "array", "items": name }] }))
+        }
         Kind::Prefixed(before, _) => as_map(json!({
             "type": "string", "pattern": format!("^{before}."),
         })),

@@ -39,6 +39,10 @@ impl Scene {
             if let Some(focus) = camera.focus {
                 writeln!(out, "focus = {focus:?}")?;
             }
+            if let Some(inside) = &self.inside {
+                let names: Vec<String> = inside.iter().map(|name| quoted(name)).collect();
+                writeln!(out, "inside = [{}]", names.join(", "))?;
+            }
             writeln!(out)?;
         }
         writeln!(out, "[image]")?;
@@ -59,6 +63,9 @@ impl Scene {
         match &self.background.environment {
             Some(image) => writeln!(out, "environment = {}", quoted(&image.as_written))?,
             None => writeln!(out, "color = {:?}", self.background.color)?,
+        }
+        if self.background.environment.is_some() || self.background.rotate != [0.0; 3] {
+            writeln!(out, "rotate = {:?}", self.background.rotate)?;
         }
         for light in &self.lights {
             write_light(out, light)?;

@@ -69,7 +69,7 @@ fn timed(
     drop(sets);
     let (mut built, builds, prepared) = build(engine, &plan, [runs, on_cpu], progress)?;
     let warm_up = built.built.frame(&plan, progress)?;
-    let pixels = pixel_hash(&warm_up.film);
+    let pixels = pixel_hash(&warm_up.film, plan.samples);
     let warm_up_ms = milliseconds(warm_up.wall);
     let pipelines_ms = milliseconds(built.first_pipelines + warm_up.pipelines);
     let mut frame = warm_up;
@@ -80,7 +80,7 @@ fn timed(
         times.wall.push(frame.wall);
         times.gpu.extend(frame.gpu_ms());
         times.traversal.push(frame.traversal);
-        if pixel_hash(&frame.film) != pixels {
+        if pixel_hash(&frame.film, plan.samples) != pixels {
             progress.warn(&format!(
                 "{}: two frames of the same scene differ, which is a bug of the device \
                  or of pointillist; please report it",
@@ -127,7 +127,8 @@ fn planned(
     let mut times = Vec::new();
     loop {
         let begun = Instant::now();
-        let plan = input.plan(sets, None, progress)?;
+        let mut plan = input.plan(sets, None, progress)?;
+        plan.aovs = false; // the picture alone is timed
         times.push(begun.elapsed());
         go_on()?;
         let is_scan = matches!(case.made, Some(Made::Scan(_)));

@@ -98,12 +98,13 @@ fn render(
     let filtered_out = sets.iter().map(|set| set.filtered_out).sum();
     let mut plan = input.plan(&sets, args.crop, progress)?;
     (plan.diagnostics, plan.extras) = (added.diagnostics, added.extras);
+    let exr =
+        args.outputs.iter().any(|path| FileFormat::from_path(path).ok() == Some(FileFormat::Exr));
+    plan.aovs = exr; // no other file holds them
     ahead.picture(&plan);
     for (name, count) in plan.names.iter().zip(&plan.isolated).filter(|(_, count)| **count > 0) {
         progress.note(&format!("object '{name}': dropped {count} isolated points"));
     }
-    let exr =
-        args.outputs.iter().any(|path| FileFormat::from_path(path).ok() == Some(FileFormat::Exr));
     let provenance = exr.then(|| provenance::of(&plan, input, &sets, engine));
     drop(sets);
     let planned = started.elapsed() - read;

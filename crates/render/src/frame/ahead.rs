@@ -7,7 +7,7 @@ use crate::passes::{Accumulate, ListMarked};
 use crate::state::RayLoop;
 use gpu::{Device, Kernel};
 use kernels::layout::SCENE_DIFFUSE;
-use plan::Plan;
+use plan::{CENTER, Plan};
 use points::device::{Needed, kernels_of_shapes, kernels_of_structures};
 use std::sync::Arc;
 
@@ -28,10 +28,15 @@ impl Renderer {
             true => passes.camera_trace.by_discs,
             false => Some(passes.camera_trace.by_tree).filter(|_| plan.camera_by_tree()),
         };
-        let may_end =
-            form == RayLoop::Queue && plan.looks_through_centers() && plan.meets_surfaces_alone();
-        let at_once = may_end && camera_trace.is_some();
-        let mut likely: Vec<Kernel> = camera_trace.into_iter().filter(|_| at_once).collect();
+        let may_end = |sample| {
+            form == RayLoop::Queue
+                && plan.looks_through_centers(sample)
+                && plan.meets_surfaces_alone()
+        };
+        let at_once = may_end(0) && camera_trace.is_some();
+        let of_centers = plan.takes_centers() && may_end(CENTER);
+        let mut likely: Vec<Kernel> =
+            camera_trace.into_iter().filter(|_| at_once || of_centers).collect();
         if !at_once {
             likely.push(passes.camera_rays.kernel);
             if by_discs {

@@ -31,7 +31,8 @@ impl Renderer {
         stats: &mut FrameStats,
     ) -> Result<Option<Classes>, RenderError> {
         let may_end = self.form == RayLoop::Queue && self.ends_at_once;
-        if !(may_end && plan.looks_through_centers() && plan.meets_surfaces_alone()) {
+        let centered = plan.looks_through_centers(params.sample_index);
+        if !(may_end && centered && plan.meets_surfaces_alone()) {
             return Ok(None);
         }
         let way = match (self.discs.lists(), &self.surfaces.tree) {

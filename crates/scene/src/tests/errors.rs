@@ -25,7 +25,10 @@ fn unknown_keys_name_the_place_and_the_nearest_key() {
 #[test]
 fn unknown_keys_far_from_any_list_the_known_and_name_another_tables() {
     let error_far = error_with(FULL, &["background.zzzzzz=1"]);
-    assert!(error_far.ends_with("unknown key; [background] has color, environment"), "{error_far}");
+    assert!(
+        error_far.ends_with("unknown key; [background] has color, environment, rotate"),
+        "{error_far}"
+    );
     let error = error_with(FULL, &["render.size=[1, 1]"]);
     assert!(error.contains("it belongs to [image], while [render] has max_bounces"), "{error}");
     assert!(error_with(FULL, &["objects.0.scale=2"]).contains("it belongs to [objects.transform]"));

@@ -37,7 +37,10 @@ fn every_built_key_is_read() {
         secondary: Secondary::Tree,
     };
     assert_eq!(scene.render, render);
-    assert_eq!(scene.background, Background { color: [0.1, 0.2, 1e-7], environment: None });
+    assert_eq!(
+        scene.background,
+        Background { color: [0.1, 0.2, 1e-7], environment: None, rotate: [0.0; 3] }
+    );
     let lights = [
         Light::Directional {
             direction: [-0.4, -1.0, -0.3],

@@ -45,6 +45,9 @@ fn settings_state_every_built_key() {
     // Of a kind that FULL has not.
     let lamp = "[[lights]]\nkind = \"headlight\"\nat_target = [1, 1, 1]\n";
     settings += &read(&format!("{lamp}{SMALL}")).unwrap().settings_toml();
+    // Only where somebody says so.
+    let glass = format!("camera = {{ eye = [0, 0, 1], target = [0, 0, 0], inside = [] }}\n{SMALL}");
+    settings += &read(&glass).unwrap().settings_toml();
     for (name, path) in keys {
         // Columns have names of their own, below the key as a header.
         let is_stated =
