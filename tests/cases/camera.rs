@@ -57,7 +57,7 @@ fn a_lens_shows_only_in_many_samples() {
 /// P, through the matrices of the header: where it lands on the picture, and its depth.
 fn project(plan: &Plan, film: &Film, at: usize) -> ([f64; 2], f64) {
     let provenance = plan.provenance();
-    let local = [0, 1, 2].map(|axis| f64::from(film.position[at][axis]) - provenance.origin[axis]);
+    let local = film.position[at].map(f64::from);
     let apply = |m: &[[f32; 4]; 4]| {
         [0, 1, 2, 3].map(|j| {
             (0..3).map(|i| local[i] * f64::from(m[i][j])).sum::<f64>() + f64::from(m[3][j])

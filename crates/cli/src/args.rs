@@ -242,6 +242,10 @@ pub struct ProgressArgs {
     /// Say nothing on stderr but errors
     #[arg(long)]
     pub quiet: bool,
+    /// Say on stderr what was chosen where the scene leaves it to the program: lengths that are "auto", and the
+    /// ranges that colour maps took
+    #[arg(long, conflicts_with = "quiet")]
+    pub verbose: bool,
     /// When to show progress on stderr; auto: on a terminal
     #[arg(long, value_name = "WHEN", value_enum, default_value_t = ProgressWhen::Auto)]
     pub progress: ProgressWhen,

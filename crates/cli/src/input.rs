@@ -374,6 +374,10 @@ impl Input {
             let file = self.scene.objects[denoising.object].points.display();
             progress.note(&format!("{file}: {denoising}"));
         }
+        for chosen in &plan.chosen {
+            let (name, value) = (&plan.names[chosen.object], chosen.value);
+            progress.detail(&format!("object '{name}': {} = {value}", chosen.key));
+        }
         for missing in &plan.missing {
             progress.warn(&format!("{missing}"));
         }

@@ -21,6 +21,7 @@ pub struct Progress {
     shared: Arc<Shared>,
     drawing: Option<JoinHandle<()>>,
     quiet: bool,
+    verbose: bool,
 }
 
 struct Shared {
@@ -70,7 +71,7 @@ impl Progress {
             let shared = Arc::clone(&shared);
             std::thread::spawn(move || shared.draw_until_closed())
         });
-        Self { shared, drawing, quiet: args.quiet }
+        Self { shared, drawing, quiet: args.quiet, verbose: args.verbose }
     }
 
     /// Ends the stage: nothing of it stays on a terminal.
@@ -91,6 +92,13 @@ impl Progress {
     /// Warns on stderr, unless `--quiet`, of a picture that may not be what was meant. `line` says what to do.
     pub fn warn(&self, line: &str) {
         self.note(&format!("warning: {line}"));
+    }
+
+    /// Says something on stderr, if `--verbose` asks for it.
+    pub fn detail(&self, line: &str) {
+        if self.verbose {
+            self.note(line);
+        }
     }
 
     /// Says something on stderr, unless `--quiet`.

@@ -5,7 +5,7 @@ use film::Film;
 use kernels::layout::{
     FIT_DISC, FIT_FULL, FIT_INCOMPLETE, FIT_NO_SURFACE, FIT_PLANE, FIT_SPHERE, GridLevel,
 };
-use plan::Plan;
+use plan::{Choice, Plan};
 use render::Traversal;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -86,6 +86,8 @@ pub struct Row {
     pub filtered_out: u64,
     /// Points that lack what is shown of them: a colour, an attribute, the scalar of a volume.
     pub missing: u64,
+    /// What was chosen where the scene leaves it to the program: lengths that are "auto", ranges that colour maps took.
+    pub chosen: Vec<Chosen>,
     /// How the fits ended.
     pub fits: Fits,
     /// The grids, the finest first: one, or several where sizes of trust balls differ; none where no ray goes through
@@ -146,6 +148,27 @@ pub struct RaysPerSecond {
     pub shadow: Option<f64>,
     /// Reflected and refracted ones, which are traced together.
     pub scattered: Option<f64>,
+}
+
+/// A value that was chosen.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Chosen {
+    /// Name of the object.
+    pub object: String,
+    /// The key below the object that would say so, such as `volume.radius`.
+    pub key: &'static str,
+    /// What it would say.
+    pub value: Value,
+}
+
+/// A number, or the values at the lower and the upper end of a range.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Value {
+    /// In the key's unit.
+    Number(f64),
+    /// In the attribute's unit.
+    Range([f64; 2]),
 }
 
 /// How the fits of all points ended.
@@ -266,6 +289,7 @@ impl Row {
             dropped: measured.dropped,
             filtered_out: measured.filtered_out,
             missing: plan.missing.iter().map(|missing| missing.points).sum(),
+            chosen: plan.chosen.iter().map(|chosen| Chosen::of(chosen, plan)).collect(),
             fits: Fits::of(built),
             grids: built.grids().into_iter().flat_map(|grids| &grids.levels).map(grid_of).collect(),
             tree: built.tree().map(|tree| Tree { nodes: tree.node_count() }),
@@ -319,6 +343,19 @@ impl Spread {
         };
         let (lower, upper) = (sorted[(sorted.len() - 1) / 2], sorted[sorted.len() / 2]);
         Self { median: 0.5 * (lower + upper), min, max }
+    }
+}
+
+impl Chosen {
+    fn of(chosen: &plan::Chosen, plan: &Plan) -> Self {
+        Self {
+            object: plan.names[chosen.object].clone(),
+            key: chosen.key,
+            value: match chosen.value {
+                Choice::Number(number) => Value::Number(number),
+                Choice::Range(range) => Value::Range(range),
+            },
+        }
     }
 }
 

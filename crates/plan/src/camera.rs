@@ -1,7 +1,8 @@
 //! The view: where rays start, which way they go, and the matrices that say so in an EXR.
 
 use crate::bulk::World;
-use glam::{DMat4, DVec3, DVec4};
+use crate::frame::Sight;
+use glam::DVec3;
 use kernels::layout::{CameraParams, NONE, ORTHOGRAPHIC, PERSPECTIVE};
 use rayon::prelude::*;
 use scene::{Camera, Projection, Up};
@@ -130,25 +131,18 @@ impl View {
     /// `origin` is what is subtracted from world coordinates.
     #[must_use]
     pub fn new(camera: &Camera, image_size: [u32; 2], origin: [f64; 3]) -> Self {
-        let [eye, target, up] = [camera.eye, camera.target, camera.up].map(DVec3::from);
-        let forward = (target - eye).normalize();
-        let right = forward.cross(up).normalize();
-        let up = right.cross(forward);
+        let sight = Sight::new(camera, image_size);
+        let [eye, target] = [camera.eye, camera.target].map(DVec3::from);
         let local_eye = eye - DVec3::from(origin);
-        // Half of what the picture shows: at distance 1, or, where rays are parallel, anywhere.
-        let half_extent = match camera.projection {
-            Projection::Perspective { vertical_fov } => (0.5 * vertical_fov.to_radians()).tan(),
-            Projection::Orthographic { height } => 0.5 * height,
-        };
         let [width, height] = image_size.map(f64::from);
         let params = CameraParams {
             eye: local_eye.as_vec3().into(),
-            scale: (half_extent / (0.5 * height)) as f32,
-            right: right.as_vec3().into(),
+            scale: (sight.half_extent / (0.5 * height)) as f32,
+            right: sight.right.as_vec3().into(),
             half_width: (0.5 * width) as f32,
-            up: up.as_vec3().into(),
+            up: sight.up.as_vec3().into(),
             half_height: (0.5 * height) as f32,
-            forward: forward.as_vec3().into(),
+            forward: sight.forward.as_vec3().into(),
             sample_index: NONE,
             tile_origin: [0, 0],
             tile_size: [0, 0],
@@ -160,42 +154,9 @@ impl View {
             focus: camera.focus.unwrap_or((target - eye).length()) as f32,
             seed: 0,
         };
-        // glam's columns, read as rows, are the row vectors' matrix.
-        let camera_axes = DMat4::from_cols(
-            right.extend(-right.dot(local_eye)),
-            up.extend(-up.dot(local_eye)),
-            (-forward).extend(forward.dot(local_eye)),
-            DVec4::W,
-        );
-        let x_scale = 0.5 / (half_extent * width / height);
-        let y_scale = 0.5 / half_extent;
-        let projection = match camera.projection {
-            Projection::Perspective { .. } => DMat4::from_cols(
-                DVec4::new(x_scale, 0.0, -0.5, 0.0),
-                DVec4::new(0.0, -y_scale, -0.5, 0.0),
-                DVec4::new(0.0, 0.0, -1.0, -1.0),
-                DVec4::new(0.0, 0.0, -1.0, 0.0),
-            ),
-            Projection::Orthographic { .. } => DMat4::from_cols(
-                DVec4::new(x_scale, 0.0, 0.0, 0.5),
-                DVec4::new(0.0, -y_scale, 0.0, 0.5),
-                DVec4::new(0.0, 0.0, -1.0, 0.0),
-                DVec4::W,
-            ),
-        };
-        Self {
-            params,
-            world_to_camera: row_vector_matrix(camera_axes),
-            world_to_ndc: row_vector_matrix(camera_axes * projection),
-        }
+        let [world_to_camera, world_to_ndc] = sight.matrices(origin);
+        Self { params, world_to_camera, world_to_ndc }
     }
-}
-
-/// `m`'s columns hold the coefficients of each output coordinate: element [i][j] of the result is
-/// what input i adds to output j.
-fn row_vector_matrix(m: DMat4) -> [[f32; 4]; 4] {
-    let columns = m.to_cols_array_2d();
-    [0, 1, 2, 3].map(|input| [0, 1, 2, 3].map(|output| columns[output][input] as f32))
 }
 
 #[cfg(test)]

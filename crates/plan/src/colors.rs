@@ -78,13 +78,13 @@ pub(crate) fn attribute_values(set: &PointSet, name: &str) -> Result<Vec<f64>, S
 }
 
 /// The colours of an attribute of the object's points, linear. What is no number is marked. Where the scene gives no
-/// range, it is that of the points that count.
+/// range, it is that of the points that count. Also returns the range.
 pub(crate) fn attribute_colors(
     object: &Object,
     set: &PointSet,
     (name, map, range): (&str, ColorMap, Option<[f64; 2]>),
     counts: impl Fn(usize) -> bool,
-) -> Result<Vec<[f32; 3]>, PlanError> {
+) -> Result<(Vec<[f32; 3]>, [f64; 2]), PlanError> {
     let values = attribute_values(set, name).map_err(|known| PlanError::NoAttribute {
         name: object.name.clone(),
         attribute: name.to_owned(),
@@ -118,7 +118,7 @@ pub(crate) fn attribute_colors(
         };
         mapped(map, part.clamp(0.0, 1.0))
     };
-    Ok(values.into_iter().map(color).collect())
+    Ok((values.into_iter().map(color).collect(), [low, high]))
 }
 
 /// The colour of a map at 0..=1, linear.

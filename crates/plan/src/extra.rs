@@ -4,8 +4,6 @@
 //! As diagnostics, they are made on the CPU from what the kernels write for every pixel, so a picture is the
 //! same with and without them.
 
-use kernels::layout::FilmPixel;
-
 /// The most channels that one name stands for.
 const MOST: usize = 6;
 
@@ -55,14 +53,12 @@ impl Extra {
         Self::ALL.into_iter().find(|extra| extra.name() == name)
     }
 
-    /// The values of its channels at one pixel; those after its last channel mean nothing. `origin` is what
-    /// positions of pixels are relative to.
-    pub(crate) fn values(self, pixel: &FilmPixel, origin: [f64; 3]) -> [f32; MOST] {
+    /// The values of its channels at one pixel; those after its last channel mean nothing. `world` is where
+    /// a surface was hit, if any was.
+    pub(crate) fn values(self, world: Option<[f64; 3]>) -> [f32; MOST] {
         match self {
-            Self::World if pixel.normal_object[3] < 0.0 => [0.0; MOST],
             Self::World => {
-                let world =
-                    [0, 1, 2].map(|axis| origin[axis] + f64::from(pixel.position_depth[axis]));
+                let Some(world) = world else { return [0.0; MOST] };
                 let [x, y, z] = world.map(|at| at as f32);
                 let low = |axis: usize, high: f32| (world[axis] - f64::from(high)) as f32;
                 [x, y, z, low(0, x), low(1, y), low(2, z)]
@@ -97,31 +93,17 @@ mod tests {
         }
     }
 
-    fn pixel(position: [f32; 3], object: f32) -> FilmPixel {
-        let [x, y, z] = position;
-        FilmPixel {
-            color: [0.0; 4],
-            position_depth: [x, y, z, 1.0],
-            normal_object: [0.0, 0.0, 1.0, object],
-            counts: [0; 4],
-            alpha: [0.0; 3],
-            pad: 0,
-        }
-    }
-
     /// Two floats have 24 bits each, and the sign of the second is one more: 2^-49 of the position is left. f64
     /// rounds the sum itself by 2^-53.
     #[test]
     fn two_floats_hold_a_position_to_two_to_the_minus_46() {
-        let origin = [4.123_456_789e5, 5.432_109_876_543e6, -6.378_137_000_1e6];
-        let local = [12.345_678, -0.001_234_5, 1e3 / 3.0];
-        let [x, y, z, dx, dy, dz] = Extra::World.values(&pixel(local, 0.0), origin);
+        let world = [4.123_456_789e5, 5.432_109_876_543e6, -6.378_137_000_1e6];
+        let [x, y, z, dx, dy, dz] = Extra::World.values(Some(world));
         for (axis, (high, low)) in [(x, dx), (y, dy), (z, dz)].into_iter().enumerate() {
-            let world = origin[axis] + f64::from(local[axis]);
-            let error = (f64::from(high) + f64::from(low) - world).abs();
-            assert!(error <= 2f64.powi(-46) * world.abs(), "axis {axis}: {error}");
-            assert_eq!(high, world as f32, "the first float is the nearest");
+            let error = (f64::from(high) + f64::from(low) - world[axis]).abs();
+            assert!(error <= 2f64.powi(-46) * world[axis].abs(), "axis {axis}: {error}");
+            assert_eq!(high, world[axis] as f32, "the first float is the nearest");
         }
-        assert_eq!(Extra::World.values(&pixel(local, -1.0), origin), [0.0; MOST]);
+        assert_eq!(Extra::World.values(None), [0.0; MOST]);
     }
 }

@@ -7,6 +7,7 @@
 
 mod bulk;
 mod camera;
+mod chosen;
 mod colors;
 mod crossings;
 mod degrees;
@@ -18,6 +19,7 @@ mod error;
 mod extra;
 mod filter;
 mod first_view;
+mod frame;
 mod images;
 mod inside;
 mod isolated;
@@ -32,6 +34,7 @@ mod shapes;
 mod volumes;
 
 pub use camera::View;
+pub use chosen::{Choice, Chosen};
 pub use degrees::{MapProjection, in_degrees};
 pub use denoise::Denoising;
 pub use diagnostic::Diagnostic;
@@ -47,7 +50,9 @@ pub use shapes::{ShapeKind, Shapes, scatter_kind};
 pub use volumes::Volumes;
 
 use bulk::Bulk;
+use chosen::Findings;
 use denoise::denoise;
+use frame::{Sight, file_origin};
 use images::{ImageList, Use};
 use kernels::layout::{
     self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, MATERIAL_DIFFUSE,
@@ -158,6 +163,8 @@ pub struct Plan {
     pub denoised: Vec<Denoising>,
     /// Points that lack what is shown of them.
     pub missing: Vec<Missing>,
+    /// Numbers that were chosen where the scene leaves them to the program, object by object.
+    pub chosen: Vec<Chosen>,
     /// Diagnostics that the film is to have, each at most once. None at first.
     pub diagnostics: Vec<Diagnostic>,
     /// What else the film is to have, each at most once. None at first.
@@ -168,6 +175,7 @@ pub struct Plan {
     pub aovs: bool,
     transparent: bool,
     channel_alpha: bool,
+    sight: Sight,
     provenance: film::Provenance,
 }
 
@@ -224,10 +232,12 @@ impl Plan {
             apart.is_drawn = own.is_some_and(|denoising| denoising.has_strays);
         }
         let coarse = precision::warnings(scene, sets, &metric, cloud.origin);
-        let mut missing = Vec::new();
-        let volumes = volumes::plan_volumes(scene, &bulk, &cloud, (watch, &mut missing))?;
-        let mut shapes =
-            shapes::whole_objects(scene, &surface_sets, &cloud, (watch, &mut missing))?;
+        let mut found = Findings::default();
+        for (index, edge) in voxel_edges(scene, sets, &smoothed.found) {
+            found.number(index, "filter.voxel", edge);
+        }
+        let volumes = volumes::plan_volumes(scene, &bulk, &cloud, (watch, &mut found))?;
+        let mut shapes = shapes::whole_objects(scene, &surface_sets, &cloud, (watch, &mut found))?;
         shapes.extend(smoothed.shapes);
         let surfaces: Vec<SlotRange> = (0..scene.objects.len())
             .map(|index| shapes::surface_slots(&cloud, &shapes, index))
@@ -241,7 +251,7 @@ impl Plan {
             &surface_sets,
             (&cloud, &surfaces),
             images,
-            (&mut list, &mut missing),
+            (&mut list, &mut found),
         )?;
         color_isosurfaces(scene, &volumes, &mut objects);
         let channel_alpha = objects.iter().any(objects::tells_channels_apart);
@@ -271,8 +281,13 @@ impl Plan {
         };
         let (camera_media, doubts) = inside::media_of_eye(scene, &known, camera.eye);
         let view = View::new(&camera, image_size, cloud.origin);
+        let sight = Sight::new(&camera, image_size);
+        let origin = file_origin(cloud.bounds);
+        let [world_to_camera, world_to_ndc] = sight.matrices(origin);
         let lights =
             scene.lights.iter().map(|light| local_light(light, &camera, cloud.origin)).collect();
+        found.chosen.sort_by_key(|chosen| chosen.object);
+        let chosen_text = chosen::attribute(&found.chosen);
         let framed = Scene { camera: Some(camera), ..scene.clone() };
         Ok(Self {
             fits,
@@ -326,18 +341,21 @@ impl Plan {
             projection,
             coarse,
             doubts,
-            missing,
+            missing: found.missing,
+            chosen: found.chosen,
             diagnostics: Vec::new(),
             extras: Vec::new(),
             aovs: true,
             transparent: scene.image.transparent,
             channel_alpha,
+            sight,
             provenance: film::Provenance {
-                world_to_camera: view.world_to_camera,
-                world_to_ndc: view.world_to_ndc,
-                origin: cloud.origin,
+                world_to_camera,
+                world_to_ndc,
+                origin,
                 settings: std::iter::once(("scene".to_owned(), framed.settings_toml()))
                     .chain(projection.map(|p| ("projection".to_owned(), p.to_string())))
+                    .chain(chosen_text)
                     .collect(),
             },
             cloud,
@@ -493,6 +511,20 @@ impl Plan {
     pub fn provenance(&self) -> &film::Provenance {
         &self.provenance
     }
+}
+
+/// The edges of the cubes over which means of an object's points were taken, where nobody gave them: by
+/// `filter.voxel`, or of depths in steps.
+fn voxel_edges(scene: &Scene, sets: &[Arc<PointSet>], denoised: &[Denoising]) -> Vec<(usize, f64)> {
+    let automatic = sets.iter().enumerate().filter_map(|(index, set)| Some((index, set.voxel?)));
+    let of_depths = denoised.iter().filter_map(|denoising| match denoising.noise {
+        points::Noise::Quantised { edge } => {
+            let scale = scene.objects[denoising.object].transform.scale;
+            Some((denoising.object, f64::from(edge) / scale))
+        }
+        _ => None,
+    });
+    automatic.chain(of_depths).collect()
 }
 
 /// Rays of the wave from the camera, with those that are none because the tile ends within a block.

@@ -1,5 +1,6 @@
 //! What kernels take of each object: parameters of its fit, its material, what its points carry.
 
+use crate::chosen::Findings;
 use crate::images::{ImageList, Use};
 use crate::missing::{Lacking, Missing, count_marked};
 use crate::{PlanError, SceneImages, Volumes, colors};
@@ -59,12 +60,12 @@ pub(crate) fn object_infos(
     sets: &[Arc<PointSet>],
     (cloud, surfaces): (&Cloud, &[SlotRange]),
     images: &SceneImages,
-    (list, missing): (&mut ImageList, &mut Vec<Missing>),
+    (list, found): (&mut ImageList, &mut Findings),
 ) -> Result<(Vec<ObjectInfo>, Vec<f32>), PlanError> {
     let mut colors: Vec<f32> = Vec::new();
     let mut infos = Vec::new();
     for (index, (object, set)) in scene.objects.iter().zip(sets).enumerate() {
-        let values = point_values(object, set, |place| cloud.counts(index, place))?;
+        let values = point_values((index, object), set, |place| cloud.counts(index, place), found)?;
         let (mut texture, mut rows) = (NONE, [[0.0; 4]; 2]);
         if let (MaterialKind::Diffuse, Albedo::Texture { file, axis }) =
             (object.material.kind, &object.material.albedo)
@@ -115,7 +116,7 @@ pub(crate) fn object_infos(
                         _ => Lacking::Color,
                     };
                     let (object, of) = (object.name.clone(), values.len() as u64);
-                    missing.push(Missing { object, what, points, of });
+                    found.missing.push(Missing { object, what, points, of });
                 }
                 colors.extend(cloud.by_slot(index, &values).iter().flatten());
             }
@@ -196,9 +197,10 @@ enum PointValues {
 }
 
 fn point_values(
-    object: &Object,
+    (index, object): (usize, &Object),
     set: &PointSet,
     counts: impl Fn(usize) -> bool,
+    found: &mut Findings,
 ) -> Result<PointValues, PlanError> {
     if object.material.kind != MaterialKind::Diffuse {
         return Ok(PointValues::None);
@@ -218,9 +220,14 @@ fn point_values(
         (Albedo::Points, None) => {
             return Err(PlanError::NoColors { name: name.clone(), file: file() });
         }
-        (Albedo::Attribute { name, color_map, range }, _) => PointValues::Colors(
-            colors::attribute_colors(object, set, (name, *color_map, *range), counts)?,
-        ),
+        (Albedo::Attribute { name, color_map, range }, _) => {
+            let shown = (name.as_str(), *color_map, *range);
+            let (colors, taken) = colors::attribute_colors(object, set, shown, counts)?;
+            if range.is_none() {
+                found.range(index, "material.value_range", taken);
+            }
+            PointValues::Colors(colors)
+        }
         (Albedo::Texture { axis, .. }, _) => match (axis, colors::places(set)) {
             (None | Some(TextureAxis::Uv), Some(places)) => PointValues::Places(places),
             (Some(TextureAxis::Uv), None) => {

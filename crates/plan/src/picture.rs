@@ -9,7 +9,6 @@ use kernels::layout::{FilmPixel, FitOutcome, NONE};
 #[derive(Debug)]
 pub struct Picture {
     film: Film,
-    origin: [f64; 3],
     /// Points tested by all rays.
     pub tests: u64,
     /// Pixels that hit a surface.
@@ -73,7 +72,7 @@ impl Picture {
             .chain(extras)
             .map(|name| (name.to_owned(), vec![0.0; window.pixels()]))
             .collect();
-        Self { film, origin: plan.cloud.origin, tests: 0, hits: 0, rays: Rays::default() }
+        Self { film, tests: 0, hits: 0, rays: Rays::default() }
     }
 
     /// Puts the pixels of one tile, row by row, where they belong. `plan` is the picture's own, and
@@ -92,13 +91,15 @@ impl Picture {
         assert_eq!(outcomes.len(), plan.cloud.points.len(), "one outcome a point");
         let fitted = Fitted { points: &plan.cloud.points, outcomes };
         let film = &mut self.film;
-        let (x0, y0) = (tile.origin[0] - film.window.x, tile.origin[1] - film.window.y);
+        let x0 = tile.origin[0] - film.window.x;
+        let origin = plan.provenance.origin;
         let columns = tile.size[0] as usize;
         for ((row, pixels), centers) in
-            (y0..).zip(pixels.chunks(columns)).zip(centers.chunks(columns))
+            (tile.origin[1]..).zip(pixels.chunks(columns)).zip(centers.chunks(columns))
         {
-            let first = row as usize * film.window.width as usize + x0 as usize;
-            for ((at, pixel), center) in (first..).zip(pixels).zip(centers) {
+            let first = (row - film.window.y) as usize * film.window.width as usize + x0 as usize;
+            let pixels = (tile.origin[0]..).zip(pixels).zip(centers);
+            for (at, ((column, pixel), center)) in (first..).zip(pixels) {
                 self.tests += u64::from(pixel.counts[0]);
                 film.color[at] = pixel.color;
                 if let Some(alpha) = &mut film.channel_alpha {
@@ -110,23 +111,26 @@ impl Picture {
                 film.depth[at] = depth;
                 film.normal[at] = [nx, ny, nz];
                 film.object[at] = object;
+                let world = (object >= 0.0).then(|| {
+                    let world = [(x, 0), (y, 1), (z, 2)]
+                        .map(|(local, axis)| plan.cloud.origin[axis] + f64::from(local));
+                    plan.sight.on_ray([column, row], world)
+                });
                 let mut planes = film.extra.iter_mut();
                 for (diagnostic, (_, plane)) in plan.diagnostics.iter().zip(&mut planes) {
                     plane[at] = diagnostic.value(pixel, fitted);
                 }
                 for extra in &plan.extras {
-                    let values = extra.values(pixel, self.origin);
+                    let values = extra.values(world);
                     for (value, (_, plane)) in
                         values[..extra.channels().len()].iter().zip(&mut planes)
                     {
                         plane[at] = *value;
                     }
                 }
-                if object >= 0.0 {
+                if let Some(world) = world {
                     self.hits += 1;
-                    let local = [x, y, z];
-                    film.position[at] =
-                        [0, 1, 2].map(|axis| (self.origin[axis] + f64::from(local[axis])) as f32);
+                    film.position[at] = [0, 1, 2].map(|axis| (world[axis] - origin[axis]) as f32);
                 }
             }
         }

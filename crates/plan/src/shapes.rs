@@ -2,6 +2,7 @@
 
 use crate::PlanError;
 use crate::bulk::World;
+use crate::chosen::Findings;
 use crate::colors::attribute_values;
 use crate::missing::{Lacking, Missing};
 use crate::neighborhoods::{at_most, in_batches, length, vectors};
@@ -86,7 +87,7 @@ pub(crate) fn whole_objects(
     scene: &Scene,
     sets: &[Arc<PointSet>],
     cloud: &Cloud,
-    (watch, missing): (&dyn Watch, &mut Vec<Missing>),
+    (watch, found): (&dyn Watch, &mut Findings),
 ) -> Result<Vec<Shapes>, PlanError> {
     let mut all = Vec::new();
     for (index, (object, set)) in scene.objects.iter().zip(sets).enumerate() {
@@ -108,7 +109,7 @@ pub(crate) fn whole_objects(
             }
             _ => {
                 let counts = |place| cloud.counts(index, place);
-                cloud.by_slot(index, &radii(object, set, radius, counts, missing)?)
+                cloud.by_slot(index, &radii((index, object), set, radius, counts, found)?)
             }
         };
         let normals = set.normals.as_ref().filter(|_| kind == ShapeKind::Disc);
@@ -126,11 +127,11 @@ pub(crate) fn whole_objects(
 
 /// The radius of each point in scene units; 0 where it has none, which is counted.
 fn radii(
-    object: &Object,
+    (index, object): (usize, &Object),
     set: &PointSet,
     radius: &ShapeRadius,
     counts: impl Fn(usize) -> bool,
-    missing: &mut Vec<Missing>,
+    found: &mut Findings,
 ) -> Result<Vec<f32>, PlanError> {
     let scale = object.transform.scale;
     let one = |length: f64| vec![(length * radius.scale).min(FARTHEST) as f32; set.len()];
@@ -138,9 +139,12 @@ fn radii(
         RadiusOf::Length(length) => return Ok(one(*length)),
         // One place has no spacing, and is not drawn.
         RadiusOf::Spacing | RadiusOf::LocalSpacing => {
-            return Ok(one(
-                median_spacing(&set.positions).map_or(0.0, |spacing| SHARE * spacing * scale)
-            ));
+            let spacing = median_spacing(&set.positions);
+            let length = spacing.map_or(0.0, |spacing| SHARE * spacing * scale);
+            if length > 0.0 {
+                found.number(index, "surface.radius", length);
+            }
+            return Ok(one(length));
         }
         RadiusOf::Attribute(name) => name,
     };
@@ -156,7 +160,7 @@ fn radii(
     let points = counted().filter(|(_, length)| !is_radius(length)).count() as u64;
     if points > 0 {
         let what = Lacking::Radius(name.clone());
-        missing.push(Missing {
+        found.missing.push(Missing {
             object: object.name.clone(),
             what,
             points,

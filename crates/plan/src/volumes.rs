@@ -3,6 +3,7 @@
 
 use crate::PlanError;
 use crate::bulk::Bulk;
+use crate::chosen::Findings;
 use crate::colors::{attribute_values, mapped};
 use crate::missing::{Lacking, Missing};
 use crate::neighborhoods::{length, open_points, spacing};
@@ -80,7 +81,7 @@ pub(crate) fn plan_volumes(
     scene: &Scene,
     bulk: &Bulk,
     cloud: &Cloud,
-    (watch, missing): (&dyn Watch, &mut Vec<Missing>),
+    (watch, found): (&dyn Watch, &mut Findings),
 ) -> Result<Volumes, PlanError> {
     let origin = cloud.origin;
     let mut volumes = Volumes { step: f32::MAX, ..Volumes::default() };
@@ -108,7 +109,7 @@ pub(crate) fn plan_volumes(
             });
         }
         if lacking > 0 {
-            missing.push(Missing {
+            found.missing.push(Missing {
                 object: object.name.clone(),
                 what: Lacking::Scalar(volume.scalar.clone()),
                 points: lacking as u64,
@@ -146,7 +147,20 @@ pub(crate) fn plan_volumes(
             .collect();
         let stops =
             volume.transfer.as_ref().map_or(vec![NO_STOP], |transfer| stops_of(transfer, &scalars));
-        volumes.add(index as u32, object, volume, radius as f32, (points, stops));
+        if let Some(Transfer::Map { range: None, .. }) = &volume.transfer {
+            found.range(index, "volume.value_range", own_range(&scalars));
+        }
+        let lengths = volumes.add(index as u32, object, volume, radius as f32, (points, stops));
+        let is_sph = matches!(volume.kernel, VolumeKernel::Sph { .. });
+        for (key, length, is_given) in [
+            ("volume.radius", radius, is_sph || volume.radius.is_some()),
+            ("volume.smoothing", lengths.smoothing, is_sph || volume.smoothing.is_some()),
+            ("volume.step", lengths.step, volume.step.is_some()),
+        ] {
+            if !is_given {
+                found.number(index, key, length);
+            }
+        }
     }
     if volumes.infos.iter().all(|info| info.kernel != VOLUME_SPH) {
         volumes.inverse_lengths = vec![0.0];
@@ -189,6 +203,13 @@ pub(crate) fn plan_volumes(
 /// The transfer function of a volume that has none.
 const NO_STOP: VolumeStop =
     VolumeStop { color: [0.8; 3], extinction: 0.0, value: 0.0, pad: [0; 3] };
+
+/// Lengths of a volume as they are, given or chosen.
+struct Lengths {
+    /// ρ, scene units squared.
+    smoothing: f64,
+    step: f64,
+}
 
 /// What a particle reaches by, in scene units, and what its kernel is multiplied by.
 struct Particle {
@@ -312,7 +333,7 @@ impl Volumes {
         volume: &Volume,
         radius: f32,
         (points, stops): (Vec<(VolumePoint, f32)>, Vec<VolumeStop>),
-    ) {
+    ) -> Lengths {
         let smoothing = volume.smoothing.map_or(0.25 * radius * radius, |rho| rho as f32);
         let lengths = points.iter().filter(|(_, inverse)| *inverse > 0.0);
         let (sum, count) = lengths.fold((0.0, 0u32), |(sum, count), (_, inverse)| {
@@ -366,6 +387,7 @@ impl Volumes {
         };
         self.list(&info, &points);
         self.infos.push(info);
+        Lengths { smoothing: smoothing.into(), step: step.into() }
     }
 
     /// Counts, adds up and scatters the points, in their order, and says which cells may show anything.

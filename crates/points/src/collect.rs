@@ -344,6 +344,7 @@ impl<'a> Collector<'a> {
         } else if self.voxel_is_automatic {
             let (means, edge) = voxels::automatic(&set);
             set = means;
+            set.voxel = edge;
             set.notes.extend(edge.map(|edge| {
                 format!("voxel = \"auto\" takes cubes of {edge:.3e}, twice the median distance of points")
             }));

@@ -49,6 +49,8 @@ pub struct PointSet {
     pub single_positions: bool,
     /// Where the scans of the file were taken from, as far as it says so, in the order of their points.
     pub sensors: Vec<Sensor>,
+    /// The edge of the cubes over which points are means, in the units of the file, where nobody gave one.
+    pub voxel: Option<f64>,
 }
 
 /// A number that every point has.
@@ -167,6 +169,7 @@ impl PointSet {
             units: self.units.clone(),
             single_positions: self.single_positions,
             sensors: self.sensors.clone(),
+            voxel: self.voxel,
         }
     }
 
