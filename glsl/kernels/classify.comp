@@ -4,6 +4,7 @@
 // reads   the ray state, objects, polynomials, paths
 //         hits             accepted, or none
 //         images, texels   the environment
+//         march            what channels of volumes show
 // writes  written_paths    the same paths: absorption on the way is taken from their throughput
 //         film             every pixel in the first wave; after that, the background where a ray ends
 //         lit, lit_hits    marks of rays that hit a diffuse surface, if there is light, and where
@@ -26,6 +27,7 @@ layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
 layout(std430, binding = WAVE_NEXT_PATHS) writeonly buffer WrittenPaths { Path written_paths[]; };
 layout(std430, binding = WAVE_LIT_HITS) writeonly buffer LitHits { LitHit lit_hits[]; };
+layout(std430, binding = MARCH_STATE) readonly buffer Marches { March marches[]; };
 layout(push_constant) uniform Push { WaveParams params; };
 #include "path.glsl"
 #include "media.glsl"
@@ -81,14 +83,17 @@ void main() {
     bool from_camera = (params.flags & uint(WAVE_FROM_CAMERA)) != 0u;
     uint channels = path.channels;
     bool left_out = leaves_out(params.transparent, from_camera, channels);
-    vec3 alpha = vec3(1.0) - (found || (channels & uint(PATH_REFLECTED)) != 0u ? vec3(0.0) : throughput);
-    vec3 background = found || left_out ? vec3(0.0) : throughput * background_at(params.background, ray.direction);
+    vec3 alpha = found || (channels & uint(PATH_REFLECTED)) != 0u ? vec3(1.0) : alpha_of(path, throughput);
+    vec3 seen = background_at(params.background, ray.direction);
+    vec3 background = found || left_out ? vec3(0.0) : through_volumes(path, throughput * seen);
     vec3 behind = path.emitted + background; // of a diffuse surface, where there is no light
     if (from_camera) {
         float depth = hit.t * dot3(ray.direction, params.forward);
+        float coverage = found ? 1.0 : (scene_has(SCENE_VOLUMES) ? absorptance(path.depth) : 0.0);
         uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, hit.status >> HIT_TOTAL_SHIFT);
-        write_first(pixel, vec4(found && !is_diffuse ? vec3(0.0) : behind, found ? 1.0 : path.coverage), !is_lit, found,
+        write_first(pixel, vec4(found && !is_diffuse ? vec3(0.0) : behind, coverage), !is_lit, found,
                     vec4(hit.position, depth), vec4(hit.normal, found ? float(object) : -1.0), counts, alpha);
+        if (scene_has(SCENE_VOLUMES)) film[pixel].along = marches[at].along;
     } else {
         count_work(pixel, ray.tests, ray.cells);
         if (!found || (is_diffuse && !is_lit)) write_channels(pixel, channels, behind);

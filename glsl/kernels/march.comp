@@ -4,8 +4,9 @@
 // reads   the ray state, hits      where each ray begins and ends
 //         objects          what the medium that a ray is in absorbs
 //         volumes, their cells, points, lengths and stops
-// writes  march            where each ray goes on in the next pass
-//         paths            what the volumes emit towards the camera, and what they leave of the throughput
+// writes  march            where each ray goes on in the next pass, and what channels of volumes show
+//         ends             of each volume, what the last step ended with, where there are several
+//         paths            what the volumes emit towards the camera, and their optical depth
 //         live             how many rays are not done
 // runs    one invocation per ray of the wave; dispatched until none lives
 // twin    crates/reference/src/volume.rs
@@ -16,9 +17,10 @@
 //         visible          of each point, how much of each light's reaches it
 // writes  march_lights     beside march
 //
-// Samples lie at the midpoints of steps that are counted from where the ray enters the first volume, or
-// from its start where it is inside the surface of one; the last step ends where the ray does, and counts
-// with its own length. Volumes add. A pass can end after any row of cells or any 64 points of one.
+// Samples lie at the ends of steps that are counted from where the ray enters the first volume, or from its
+// start where it is inside the surface of one; the last step ends where the ray does, and counts with its own
+// length. Between the scalars at its ends, the transfer function is integrated. Volumes add. A pass can end after
+// any row of cells or any 64 points of one.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
@@ -35,6 +37,11 @@ layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
 layout(std430, binding = WAVE_PATHS) buffer Paths { Path paths[]; };
 layout(std430, binding = MARCH_STATE) buffer Marches { March marches[]; };
+#ifdef LIT
+layout(std430, binding = MARCH_ENDS) buffer Ends { vec4 ends[]; };
+#else
+layout(std430, binding = MARCH_ENDS) buffer Ends { float ends[]; };
+#endif
 #ifdef SHADOWS
 layout(std430, binding = WAVE_LIT_RAYS) readonly buffer LitRays { uint lit_rays[]; };
 layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
@@ -66,7 +73,11 @@ vec4 visible_from(uint point) {
 layout(push_constant) uniform Push { MarchParams params; };
 
 #define AT_ONCE 64u // points of a row
-#define FEWEST 1e-30 // transmittance that still counts
+#define DEEPEST 69.0775528 // optical depth through which nothing is seen, a transmittance of 1e-30
+#define OPAQUE NO_HIT // the optical depth from there on
+#define UNREACHED NO_HIT // the scalar where no point is in reach
+#define UNSEEN (-NO_HIT) // and where nothing is seen from the cell, whatever it is
+#define LARGEST 1e38 // scalar
 #define MOST_SAMPLES 16777216.0 // floats count no farther
 
 bool is_inside(uint path, uint object) {
@@ -104,37 +115,73 @@ vec4 visible_at(vec4 sum, vec4 weights, FourPoints four) {
 }
 #endif
 
+// An end of a step, and the step before it.
 struct Sample {
     vec3 x;
     float length_of_step;
-    float t;
+    float begin; // of the step, along the ray
+    bool outside; // at the border of the volumes' boxes, where no point is in reach
 };
 
-Sample sample_of(Ray ray, vec2 way, uint place) {
-    float begin = float(place) * params.step;
-    float length_of_step = min(params.step, (way.y - way.x) - begin);
-    float t = way.x + (begin + 0.5 * length_of_step);
-    return Sample(ray.origin + t * ray.direction, length_of_step, t);
+Sample sample_of(Ray ray, vec2 way, float end, uint place, uint steps) {
+    float begin = float(max(place, 1u) - 1u) * params.step;
+    float length_of_step = place > 0u ? min(params.step, (way.y - way.x) - begin) : 0.0;
+    vec3 x = ray.origin + (way.x + (begin + length_of_step)) * ray.direction;
+    bool outside = (place == 0u && way.x > 0.0) || (place == steps && way.y < end);
+    return Sample(x, length_of_step, way.x + begin, outside);
 }
 
-// Whether x is in the volume's grid, and anything may be seen from its cell.
-bool may_be_seen(VolumeInfo volume, vec3 x) {
-    vec3 cells_off = (x - volume.grid.origin) * volume.grid.inverse_edge;
+#define LOOK_NOWHERE 0u // nothing is seen from the cell
+#define LOOK_OUTSIDE 1u // no point is in reach
+#define LOOK_AROUND 2u
+
+// What is to be done at a place.
+uint look_at(VolumeInfo volume, Sample at) {
+    vec3 cells_off = (at.x - volume.grid.origin) * volume.grid.inverse_edge;
     bool inside = all(greaterThanEqual(cells_off, vec3(0.0))) && all(lessThan(cells_off, vec3(volume.grid.resolution)));
-    return inside && volume_cell(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))).counts != 0u;
+    bool seen = volume_cell(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, at.x))).counts != 0u;
+    return !inside || at.outside ? LOOK_OUTSIDE : (seen ? LOOK_AROUND : LOOK_NOWHERE);
 }
 
-// What a ray shows of the scalar that stands for its whole way: a layer of one radius, or all of it.
+bool is_scalar(float end) {
+    return abs(end) <= LARGEST;
+}
+
+// Kahan's summation: `lost` is what rounding added to the sum.
+float add_to(float sum, float term, inout float lost) {
+    float more = term - lost;
+    float total = sum + more;
+    float left = (total - sum) - more;
+    lost = abs(total) < NO_HIT ? left : 0.0; // infinity loses nothing
+    return total;
+}
+
+vec3 add_to(vec3 sum, vec3 terms, inout vec3 lost) {
+    vec3 more = terms - lost;
+    vec3 total = sum + more;
+    vec3 left = (total - sum) - more;
+    lost = mix(vec3(0.0), left, lessThan(abs(total), vec3(NO_HIT)));
+    return total;
+}
+
+// Whether one scalar stands for the whole way of a ray.
+bool is_whole(VolumeInfo volume) {
+    return volume.mode == VOLUME_MAXIMUM || volume.mode == VOLUME_AVERAGE || volume.mode == VOLUME_INTEGRAL;
+}
+
+// What a ray shows of the scalar that stands for its whole way: a layer of one radius, all of it, or once.
 March shown(VolumeInfo volume, March march) {
-    float scalar = march.color.x;
     float way = march.color.y;
     bool reached = way > 0.0;
     bool mean = volume.mode == VOLUME_AVERAGE;
-    vec4 seen = transfer(volume, mean ? scalar / (reached ? way : 1.0) : scalar);
-    float through = exp_negative(-(seen.w * (mean ? way : sqrt(volume.square_radius))));
-    through = through < FEWEST ? 0.0 : through;
-    march.transmittance = reached ? through : 1.0;
-    march.color = reached ? (1.0 - through) * seen.xyz : vec3(0.0);
+    float scalar = reached ? march.color.x / (mean && reached ? way : 1.0) : 0.0;
+    float thickness = mean ? way : (volume.mode == VOLUME_INTEGRAL ? 1.0 : sqrt(volume.square_radius));
+    Shown seen = mean_of(volume, scalar, scalar);
+    float depth = seen.scattering.w * thickness;
+    vec3 color = (thickness * mean_transmittance(depth)) * (seen.scattering.xyz + seen.emission);
+    march.depth = reached ? (depth > DEEPEST ? OPAQUE : depth) : 0.0;
+    march.color = reached ? color : vec3(0.0);
+    march.along = scalar;
     return march;
 }
 
@@ -166,11 +213,11 @@ vec3 scattered(VolumeInfo volume, float numerator, float weights, MarchLight sum
 
 void finish(uint at, uint path, March march) {
 #ifdef SHADOWS
-    light_sums[at].arriving *= march.transmittance;
+    light_sums[at].arriving *= exp_negative(-march.depth);
 #else
-    paths[path].emitted += paths[path].throughput * march.color;
-    paths[path].throughput *= march.transmittance;
-    paths[path].coverage = 1.0 - march.transmittance;
+    float before = paths[path].depth;
+    paths[path].emitted += (exp_negative(-before) * paths[path].throughput) * march.color;
+    paths[path].depth = before + march.depth;
 #endif
 }
 
@@ -194,35 +241,45 @@ void main() {
 #ifdef LIT
     MarchLight sums = march_lights[at];
 #endif
-    if (march.state == 0u) {
-        march.transmittance = 1.0;
-        march.state = 1u;
-    }
+    march.state = max(march.state, 1u);
 #ifndef SHADOWS
     uint medium = paths[at].media_count > 0u ? medium_without(Media(at, paths[at].media_count), NONE) : NONE;
 #endif
     vec2 way = way_through(ray, path, end);
     float span = way.y - way.x;
-    uint samples = uint(min(max(-floor(-(span / params.step)), 0.0), MOST_SAMPLES));
+    uint steps = uint(min(max(-floor(-(span / params.step)), 0.0), MOST_SAMPLES));
+    uint places = steps > 0u ? steps + 1u : 0u;
     uint work_left = params.work;
 
     // Drivers without real branches run what is under an if for every ray: loops of one turn or none are passed over.
     bool alone = params.volume_count == 1u;
     VolumeInfo volume = volumes[march.volume];
-    while (march.place < samples && work_left > 0u) {
-        Sample at_place = sample_of(ray, way, march.place);
+    uint end_at = at * params.volume_count + march.volume;
+#ifdef LIT
+    vec4 before = ends[end_at]; // and the light there
+#else
+    float before = ends[end_at];
+#endif
+    while (march.place < places && work_left > 0u) {
+        Sample at_place = sample_of(ray, way, end, march.place, steps);
         bool fresh = alone && march.row == 0u && march.cursor == 0u;
-        while (fresh && march.place < samples && work_left > 0u && !may_be_seen(volume, at_place.x)) {
+        while (fresh && march.place < places && work_left > 0u && look_at(volume, at_place) == LOOK_NOWHERE) {
             ++march.place;
             --work_left;
-            at_place = sample_of(ray, way, march.place);
+#ifdef LIT
+            before.x = UNSEEN;
+#else
+            before = UNSEEN;
+#endif
+            at_place = sample_of(ray, way, end, march.place, steps);
         }
-        bool counts = march.place < samples && takes_part(volume, path) && may_be_seen(volume, at_place.x);
+        bool counts = march.place < places && takes_part(volume, path);
+        uint look = counts ? look_at(volume, at_place) : LOOK_NOWHERE;
         vec3 x = at_place.x;
         float reach = sqrt(volume.square_radius);
         uvec3 low, high;
         cells_around(volume.grid, x, reach, low, high);
-        uint rows = counts ? (high.y - low.y + 1u) * (high.z - low.z + 1u) : 0u;
+        uint rows = look == LOOK_AROUND ? (high.y - low.y + 1u) * (high.z - low.z + 1u) : 0u;
         bool particles = volume.kernel == VOLUME_SPH;
 
         while (march.row < rows && work_left > 0u) {
@@ -261,66 +318,138 @@ void main() {
         }
         work_left -= min(work_left, 2u);
 
-        uint ends = march.row >= rows && march.place < samples ? 1u : 0u;
-        while (ends > 0u) {
-            --ends;
+        uint end_count = march.row >= rows && march.place < places ? 1u : 0u;
+        while (end_count > 0u) {
+            --end_count;
             bool reached = march.denominator > 0.0;
             float divisor = volume.kernel == VOLUME_SHEPARD && reached ? march.denominator : 1.0;
-            float scalar = march.numerator / divisor;
-            bool emission = volume.mode == VOLUME_EMISSION;
-            bool greater = !(march.color.y > 0.0) || scalar > march.color.x;
-            float greatest = greater ? scalar : march.color.x;
-            float integral = march.color.x + at_place.length_of_step * scalar;
-            vec2 whole =
-                vec2(volume.mode == VOLUME_MAXIMUM ? greatest : integral, march.color.y + at_place.length_of_step);
-            march.color.xy = reached && !emission ? whole : march.color.xy;
-            vec4 seen = transfer(volume, scalar);
-            float extinction = reached && emission ? seen.w : 0.0;
-            vec3 color = seen.xyz;
+            float scalar = min(max(march.numerator / divisor, -LARGEST), LARGEST);
+            float here = look == LOOK_NOWHERE ? UNSEEN : (reached ? scalar : UNREACHED);
 #ifdef LIT
-            uint lit = extinction > 0.0 && volume.shading != VOLUME_EMITS ? 1u : 0u;
+            float there = march.place > 0u ? before.x : UNSEEN;
+            vec3 light = vec3(1.0);
+            uint lit = reached && volume.shading != VOLUME_EMITS ? 1u : 0u;
             for (uint i = 0u; i < lit; ++i) {
-                color *= scattered(volume, march.numerator, march.denominator, sums, at_place.x, ray.direction);
+                light = scattered(volume, march.numerator, march.denominator, sums, at_place.x, ray.direction);
             }
             sums = MarchLight(vec3(0.0), 0u, vec3(0.0), 0u, vec4(0.0));
+            vec3 light_there = before.yzw;
+            before = vec4(here, light);
+#else
+            float there = march.place > 0u ? before : UNSEEN;
+            before = here;
 #endif
-            march.sample_color += extinction * color;
-            march.sample_extinction += extinction;
+            // A step with one end in reach is so for half of its way. At the border of particles a sum is 0.
+            bool is_here = is_scalar(here), is_there = is_scalar(there);
+            bool both = is_here && is_there;
+            bool shows = (is_here || is_there) && here != UNSEEN && there != UNSEEN;
+            float share = both ? 1.0 : 0.5;
+            float border = particles ? 0.0 : (is_here ? here : there);
+            float from = is_there ? there : border, to = is_here ? here : border;
+
+            bool emission = volume.mode == VOLUME_EMISSION;
+            uint wholes = is_whole(volume) ? 1u : 0u;
+            while (wholes > 0u) {
+                --wholes;
+                float counted = shows ? share * at_place.length_of_step : 0.0;
+                bool greater = is_here && (!(march.color.z > 0.0) || here > march.color.x);
+                bool most = volume.mode == VOLUME_MAXIMUM;
+                float greatest = greater ? here : march.color.x;
+                float term = shows ? counted * (0.5 * (from + to)) : 0.0;
+                float integral = add_to(march.color.x, most ? 0.0 : term, march.color_lost.x);
+                march.color.x = most ? greatest : integral;
+                march.color.z = is_here ? 1.0 : march.color.z;
+                march.color.y = add_to(march.color.y, counted, march.color_lost.y);
+            }
+            uint integrals = emission && shows ? 1u : 0u;
+            while (integrals > 0u) {
+                --integrals;
+                Shown seen = mean_of(volume, from, to);
+#ifdef LIT
+                vec3 mean_light = both ? 0.5 * (light_there + light) : (is_here ? light : light_there);
+                seen.scattering.xyz *= mean_light;
+#endif
+                march.step_color += share * (seen.scattering.xyz + seen.emission);
+                march.step_extinction += share * seen.scattering.w;
+            }
             march.numerator = 0.0;
             march.denominator = 0.0;
             march.row = 0u;
             ++march.volume;
             bool last = march.volume >= params.volume_count;
-            bool emits = last && march.sample_extinction > 0.0;
-            float through = exp_negative(-(march.sample_extinction * at_place.length_of_step));
-            vec3 mean = march.sample_color / (emits ? march.sample_extinction : 1.0);
+            float step_depth = march.step_extinction * at_place.length_of_step;
+            bool emits = last && (step_depth > 0.0 || any(greaterThan(march.step_color, vec3(0.0))));
+            float through = exp_negative(-march.depth);
+            vec3 lengths = vec3(at_place.length_of_step * mean_transmittance(step_depth)); // that a step shows
 #ifndef SHADOWS
             uint absorbs = emits && medium != NONE ? 1u : 0u;
-            for (uint i = 0u; i < absorbs; ++i) mean *= transmittance(medium, at_place.t);
+            while (absorbs > 0u) {
+                --absorbs;
+                vec3 both_depths = vec3(step_depth) + object_at(medium).absorption * at_place.length_of_step;
+                lengths.x = at_place.length_of_step * mean_transmittance(both_depths.x);
+                lengths.y = at_place.length_of_step * mean_transmittance(both_depths.y);
+                lengths.z = at_place.length_of_step * mean_transmittance(both_depths.z);
+                lengths *= transmittance(medium, at_place.begin);
+            }
+            bool again = march.state == 3u;
+            vec3 sent = through * (lengths * march.step_color);
+            uint sends = emits && !again ? 1u : 0u;
+            while (sends > 0u) {
+                --sends;
+                march.color = add_to(march.color, sent, march.color_lost);
+            }
+            // Where the light is lost that is looked for: a place within this step.
+            float missing = -march.along - march.depth;
+            bool found = again && last && step_depth > 0.0 && step_depth >= missing;
+            float t = at_place.begin + at_place.length_of_step * (max(missing, 0.0) / (step_depth > 0.0 ? step_depth : 1.0));
+            march.along = found ? t * dot3(ray.direction, params.forward) : march.along;
+#else
+            bool found = false;
 #endif
-            march.color += emits ? (march.transmittance * (1.0 - through)) * mean : vec3(0.0);
-            march.transmittance *= emits ? through : 1.0;
-            march.sample_color = last ? vec3(0.0) : march.sample_color;
-            march.sample_extinction = last ? 0.0 : march.sample_extinction;
+            uint adds = last && step_depth > 0.0 ? 1u : 0u;
+            while (adds > 0u) {
+                --adds;
+                march.depth = add_to(march.depth, step_depth, march.depth_lost);
+            }
+            march.step_color = last ? vec3(0.0) : march.step_color;
+            march.step_extinction = last ? 0.0 : march.step_extinction;
             march.volume = last ? 0u : march.volume;
-            bool dark = march.transmittance < FEWEST;
-            march.transmittance = dark ? 0.0 : march.transmittance;
-            march.place = last ? (dark ? samples : march.place + 1u) : march.place;
+            bool dark = march.depth > DEEPEST;
+            march.depth = dark ? OPAQUE : march.depth;
+            march.place = last ? (dark || found ? places : march.place + 1u) : march.place;
         }
         uint other = alone ? 0u : 1u;
         while (other > 0u) {
             --other;
+            uint next_at = at * params.volume_count + march.volume;
+            ends[end_at] = before;
+            end_at = next_at;
+            before = ends[end_at];
             volume = volumes[march.volume];
         }
     }
-    bool done = march.place >= samples;
-    march.state = done ? 2u : 1u;
+    ends[end_at] = before;
+    bool done = march.place >= places;
+    bool whole = is_whole(volumes[0]);
+    bool again = march.state == 3u;
+    if (done && !again) {
+        march = whole ? shown(volumes[0], march) : march;
+        finish(at, path, march);
+#ifndef SHADOWS
+        again = params.wants_depth != 0u && !whole;
+        march.along = again ? -depth_of_absorptance(0.5 * absorptance(march.depth)) : march.along;
+        again = again && march.along < 0.0;
+        march.along = params.wants_depth != 0u && !whole && !again ? -1.0 : march.along;
+        march.place = again ? 0u : march.place;
+        march.depth = again ? 0.0 : march.depth;
+        march.depth_lost = again ? 0.0 : march.depth_lost;
+        done = !again;
+#endif
+    }
+    march.state = done ? 2u : (again ? 3u : 1u);
     marches[at] = march;
 #ifdef LIT
     march_lights[at] = sums;
 #endif
-    uint mode = volumes[0].mode;
-    bool whole = mode == VOLUME_MAXIMUM || mode == VOLUME_AVERAGE;
-    if (done) finish(at, path, whole ? shown(volumes[0], march) : march);
-    else atomicAdd(live, 1u);
+    if (!done) atomicAdd(live, 1u);
 }

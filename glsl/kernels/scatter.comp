@@ -98,7 +98,7 @@ void store_path(uint to, uint from, Path path, vec3 throughput, uint channels, b
     }
     if (scene_has(SCENE_VOLUMES)) {
         next_paths[to].emitted = path.emitted;
-        next_paths[to].coverage = path.coverage;
+        next_paths[to].depth = path.depth;
     }
 }
 
@@ -137,9 +137,9 @@ void send(Turn turn, Path path, uint channels, uint to) {
     } else {
         uint how = channels | was_reflected | (reflects ? uint(PATH_REFLECTED) : 0u);
         vec3 seen = leaves_out(params.transparent, false, how) ? vec3(0.0) : background_at(params.background, direction);
-        write_channels(path.pixel, channels, path.emitted + turn.throughput * seen);
+        write_channels(path.pixel, channels, path.emitted + through_volumes(path, turn.throughput * seen));
         bool refracted = (how & uint(PATH_REFLECTED)) == 0u;
-        write_alpha(path.pixel, channels, vec3(1.0) - (refracted ? turn.throughput : vec3(0.0)));
+        write_alpha(path.pixel, channels, refracted ? alpha_of(path, turn.throughput) : vec3(1.0));
     }
 }
 

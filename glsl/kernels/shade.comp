@@ -37,6 +37,6 @@ void main() {
     LitHit hit = lit_hit_of(ray);
     vec3 light = gathered(at, path.pixel);
     vec3 albedo = albedo_at(object_of(hit.slot), hit.slot, hit.position);
-    vec3 scattered = path.throughput * (albedo * (light * INVERSE_PI));
+    vec3 scattered = through_volumes(path, path.throughput * (albedo * (light * INVERSE_PI)));
     write_channels(path.pixel, path.channels, path.emitted + scattered);
 }

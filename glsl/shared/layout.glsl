@@ -142,6 +142,7 @@
 #define VOLUME_MAXIMUM 1
 #define VOLUME_AVERAGE 2
 #define VOLUME_ISOSURFACE 3 // a surface where the scalar is one number; nothing along the way
+#define VOLUME_INTEGRAL 4
 
 // What the light of the scene does in a volume.
 #define VOLUME_EMITS 0    // nothing: colours are emitted
@@ -215,6 +216,7 @@
 #define TRACE_NODES 52
 #define TREE_BOXES 53
 #define TREE_NODES 54
+#define MARCH_ENDS 55 // by ray and volume
 #define SHADE_IMAGES 30
 #define SHADE_TEXELS 31
 
@@ -581,7 +583,7 @@ struct Path {            // 80 bytes
     uint media_count;    // 28  objects that it is inside
     uint media[MEDIA_WORDS]; // 32  those, 16 bits each, in no order
     vec3 emitted;        // 64  what volumes on its way have sent to the pixel
-    float coverage;      // 76  of the volumes on the way from the camera
+    float depth;         // 76  optical, of volumes on its way so far; no part of the throughput
 };
 
 // A field between points (section 6 of the paper).
@@ -596,7 +598,7 @@ struct VolumeInfo {      // 96 bytes
     uint object;         // 56
     uint bounded;        // 60  1: it counts inside the object's surface alone
     vec3 high;           // 64  of the box, whose lowest corner is the grid's
-    uint mode;           // 76  VOLUME_EMISSION and so on; maximum, average: the scene's only volume
+    uint mode;           // 76  VOLUME_EMISSION and so on; maximum, average, integral: the scene's only volume
     float iso;           // 80  scalar on an isosurface
     uint slot;           // 84  of the polynomial that stands for an isosurface, behind those of all points
     uint refracts;       // 88  1: an isosurface of glass, which rays are inside or outside of
@@ -613,29 +615,38 @@ struct VolumePoint {     // 16 bytes
     float scalar;        // 12  of a particle, A (m / rho) / (pi h^3)
 };
 
-// Of a transfer function, ascending in value.
-struct VolumeStop {      // 32 bytes
+// Of a transfer function, ascending in value. Integrals are those from the first stop to this one, each of them the sum
+// of two numbers.
+struct VolumeStop {      // 96 bytes
     vec3 color;          //  0
     float extinction;    // 12
     float value;         // 16
-    uint pad[3];         // 20
+    float emission[3];   // 20  radiance per length
+    vec4 scattering_integral; // 32  of colour by extinction, and of extinction
+    vec4 scattering_rest; // 48
+    vec4 emission_integral; // 64
+    vec4 emission_rest;  // 80
 };
 
-// How far a ray has marched through volumes.
-struct March {           // 64 bytes
+// How far a ray has marched through volumes. Sums over its way are of two numbers: what rounding added is taken from
+// the next term.
+struct March {           // 80 bytes
     vec3 color;          //  0  emitted towards its start so far; of other modes than emission, the greatest
-                         //     scalar or the integral of all, and the length in reach
-    float transmittance; // 12
-    vec3 sample_color;   // 16  of this sample, each volume's by its extinction
-    float sample_extinction; // 28
-    float numerator;     // 32  of this volume's scalar
-    float denominator;   // 36
-    uint state;          // 40  0: not begun, 1: on its way, 2: done
-    uint place;          // 44  sample
-    uint volume;         // 48
-    uint row;            // 52  of cells around the sample
-    uint cursor;         // 56  points of the row that are done
-    uint pad;            // 60
+                         //     scalar or the integral of all, the length in reach, and whether any was found
+    float depth;         // 12  optical depth
+    vec3 color_lost;     // 16
+    float depth_lost;    // 28
+    vec3 step_color;     // 32  of this step, of the volumes so far: what it sends per length
+    float step_extinction; // 44
+    float numerator;     // 48  of this volume's scalar
+    float denominator;   // 52
+    uint state;          // 56  0: not begun, 1: on its way, 2: done, 3: once more, for `along`
+    uint place;          // 60  end of a step
+    uint volume;         // 64
+    uint row;            // 68  of cells around the place
+    uint cursor;         // 72  points of the row that are done
+    float along;         // 76  for the channels of volumes: the depth along the viewing axis where half of what is
+                         //     lost is lost, or below 0; of other modes than emission, the scalar that is shown
 };
 
 // What a sample of a lit volume needs beside its scalar, so far.
@@ -667,12 +678,15 @@ struct IsoSearch {       // 80 bytes
     uint looked;         // 76  whether it was looked at, or is known from its cell; then which end moved
 };
 
-struct MarchParams {     // 20 bytes
-    uint ray_count;      //  0
-    uint volume_count;   //  4
-    float step;          //  8
-    uint work;           // 12  loop iterations a ray may spend in this pass
-    uint light_count;    // 16  of march_lit
+struct MarchParams {     // 48 bytes
+    vec3 forward;        //  0  viewing axis
+    uint ray_count;      // 12
+    uint volume_count;   // 16
+    float step;          // 20
+    uint work;           // 24  loop iterations a ray may spend in this pass
+    uint light_count;    // 28  of march_lit
+    uint wants_depth;    // 32  1: `along` is asked for
+    uint pad[3];         // 36
 };
 
 // Of the kernels that light a volume's points.
@@ -705,7 +719,7 @@ struct FilmPixel {       // 80 bytes
     vec4 normal_object;  // 32  facing the viewer; object, or -1
     uvec4 counts;        // 48  tests, cells, slot of the hit or NONE, iterations
     vec3 alpha;          // 64  1 less what the channel lets through of the background
-    uint pad;            // 76
+    float along;         // 76  as in March
 };
 
 // A pixel's samples so far: sums of colours, alphas and of the first two counts; all else is the first's.

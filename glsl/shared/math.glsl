@@ -55,6 +55,43 @@ Floats exp_negative(Floats x) { \
 EXP_NEGATIVE(float, int, uint, IS_BELOW)
 EXP_NEGATIVE(vec4, ivec4, uvec4, lessThan)
 
+// 1 - e^-x for x >= 0, what a way of the optical depth x takes from its light, with all digits however small x is.
+// Error under 3 ulp. e^r - 1 by the polynomial of exp_negative, to which the 1 is never added.
+float absorptance(float x) {
+    float clamped = max(-x, -80.0);
+    float n = floor(clamped * 1.44269504 + 0.5);
+    float r = (clamped - n * 0.693359375) + n * 2.12194440e-4;
+    float p = r * 1.9875691500e-4 + 1.3981999507e-3;
+    p = p * r + 8.3334519073e-3;
+    p = p * r + 4.1665795894e-2;
+    p = p * r + 1.6666665459e-1;
+    p = p * r + 5.0000001201e-1;
+    float less = p * (r * r) + r;
+    float scale = uintBitsToFloat(uint(int(n) + 127) << 23);
+    return x > 80.0 ? 1.0 : (1.0 - scale) - scale * less;
+}
+
+#define SHALLOW 1e-30 // optical depth of which nothing is seen
+
+// (1 - e^-x) / x for x >= 0, and 1 for 0: the mean transmittance from the places of a way to its end.
+float mean_transmittance(float x) {
+    return x > SHALLOW ? absorptance(x) / (x > SHALLOW ? x : 1.0) : 1.0;
+}
+
+// -ln(1 - x) for 0 <= x <= 1/2: the optical depth that takes x, with all digits. Error under 4 ulp. Twice the area
+// tangent of x / (2 - x), by its series.
+float depth_of_absorptance(float x) {
+    float t = x / (2.0 - x);
+    float z = t * t;
+    float p = 6.66666667e-2 * z + 7.69230769e-2;
+    p = p * z + 9.09090909e-2;
+    p = p * z + 1.11111111e-1;
+    p = p * z + 1.42857143e-1;
+    p = p * z + 2.00000000e-1;
+    p = p * z + 3.33333333e-1;
+    return 2.0 * (t + t * (z * p));
+}
+
 // Sine and cosine for |x| <= pi / 4. Error under 1 ulp. Polynomials after Moshier's Cephes, sinf.c.
 float sin_octant(float x) {
     float z = x * x;

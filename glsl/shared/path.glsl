@@ -6,6 +6,7 @@
 #define PATH_GLSL
 #include "index.glsl"
 #include "layout.glsl"
+#include "math.glsl"
 #include "scene.glsl"
 
 #ifdef QUEUE
@@ -51,7 +52,18 @@ Path path_of(uint ray) {
     path.pixel = shares_path() ? pixel.y * params.tile_size.x + pixel.x : path.pixel;
     // Without volumes nobody stores these.
     path.emitted = scene_has(SCENE_VOLUMES) ? path.emitted : vec3(0.0);
-    path.coverage = scene_has(SCENE_VOLUMES) ? path.coverage : 0.0;
+    path.depth = scene_has(SCENE_VOLUMES) ? path.depth : 0.0;
     return path;
+}
+
+// What of a light comes through the volumes on the path.
+vec3 through_volumes(Path path, vec3 light) {
+    return scene_has(SCENE_VOLUMES) ? exp_negative(-path.depth) * light : light;
+}
+
+// 1 less the throughput of surfaces and volumes.
+vec3 alpha_of(Path path, vec3 throughput) {
+    vec3 alpha = vec3(1.0) - throughput;
+    return scene_has(SCENE_VOLUMES) ? alpha + throughput * absorptance(path.depth) : alpha;
 }
 #endif

@@ -14,7 +14,8 @@ layout(std430, binding = MARCH_VOLUMES) readonly buffer Volumes { VolumeInfo vol
 layout(binding = MARCH_CELLS) uniform usamplerBuffer volume_cell_texels; // two values each
 layout(binding = MARCH_POINTS) uniform usamplerBuffer volume_point_texels; // four
 layout(binding = MARCH_LENGTHS) uniform usamplerBuffer length_texels; // one
-layout(binding = MARCH_STOPS) uniform usamplerBuffer stop_texels; // four, two a stop
+layout(binding = MARCH_STOPS) uniform usamplerBuffer stop_texels; // four
+#define STOP_TEXELS 6u
 
 VolumeCell volume_cell(uint at) {
     uvec2 words = texelFetch(volume_cell_texels, int(at)).xy;
@@ -31,11 +32,17 @@ float inverse_length_of(uint at) {
 }
 
 vec4 color_of_stop(uint at) {
-    return uintBitsToFloat(texelFetch(stop_texels, int(2u * at)));
+    return uintBitsToFloat(texelFetch(stop_texels, int(STOP_TEXELS * at)));
 }
 
-float value_of_stop(uint at) {
-    return uintBitsToFloat(texelFetch(stop_texels, int(2u * at) + 1).x);
+// The value, and the emission there.
+vec4 value_of_stop(uint at) {
+    return uintBitsToFloat(texelFetch(stop_texels, int(STOP_TEXELS * at) + 1));
+}
+
+// One of the integrals from the first stop to this one: 2 and 3, 4 and 5 add up.
+vec4 integral_to(uint at, uint which) {
+    return uintBitsToFloat(texelFetch(stop_texels, int(STOP_TEXELS * at + which)));
 }
 #else
 layout(std430, binding = MARCH_CELLS) readonly buffer VolumeCells { VolumeCell volume_cells[]; };
@@ -59,8 +66,15 @@ vec4 color_of_stop(uint at) {
     return vec4(stops[at].color, stops[at].extinction);
 }
 
-float value_of_stop(uint at) {
-    return stops[at].value;
+vec4 value_of_stop(uint at) {
+    VolumeStop stop = stops[at];
+    return vec4(stop.value, stop.emission[0], stop.emission[1], stop.emission[2]);
+}
+
+vec4 integral_to(uint at, uint which) {
+    VolumeStop stop = stops[at];
+    vec4 scattering = which == 2u ? stop.scattering_integral : stop.scattering_rest;
+    return which < 4u ? scattering : (which == 4u ? stop.emission_integral : stop.emission_rest);
 }
 #endif
 
@@ -169,21 +183,69 @@ vec3 gradient_of(VolumeInfo volume, float scalar, vec3 pull, vec3 weights_pull) 
     return volume.kernel == VOLUME_SHEPARD ? pull - scalar * weights_pull : pull;
 }
 
-// Colour and extinction of a scalar: linear between stops, constant beyond the outer ones.
-vec4 transfer(VolumeInfo volume, float scalar) {
-    uint low = volume.first_stop; // the last stop not above the scalar, or the first
-    uint high = volume.first_stop + volume.stop_count; // one behind
-    while (high - low > 1u) {
-        uint middle = (low + high) / 2u;
-        bool above = value_of_stop(middle) > scalar;
-        high = above ? middle : high;
-        low = above ? low : middle;
+// Means of a transfer function: what is sent along the ray per length.
+struct Shown {
+    vec4 scattering; // colour by extinction, and the extinction
+    vec3 emission;
+};
+
+// How many stops are at or below each of two scalars, the lower first: 0 below the first stop.
+uvec2 pieces_of(VolumeInfo volume, vec2 scalars) {
+    uvec2 low = uvec2(0u), high = uvec2(volume.stop_count);
+    while (low.x < high.x || low.y < high.y) {
+        uvec2 middle = min((low + high) / 2u, uvec2(volume.stop_count - 1u));
+        vec2 values = vec2(value_of_stop(volume.first_stop + middle.x).x, value_of_stop(volume.first_stop + middle.y).x);
+        bvec2 open = lessThan(low, high);
+        bvec2 above = greaterThan(values, scalars);
+        high.x = open.x && above.x ? middle.x : high.x;
+        high.y = open.y && above.y ? middle.y : high.y;
+        low.x = open.x && !above.x ? middle.x + 1u : low.x;
+        low.y = open.y && !above.y ? middle.y + 1u : low.y;
     }
-    uint next = min(low + 1u, volume.first_stop + volume.stop_count - 1u);
-    float value = value_of_stop(low);
-    float span = value_of_stop(next) - value;
-    float part = span > 0.0 ? min(max((scalar - value) / (span > 0.0 ? span : 1.0), 0.0), 1.0) : 0.0;
-    vec4 from = color_of_stop(low), to = color_of_stop(next);
-    return from + part * (to - from);
+    return low;
+}
+
+// The mean from one scalar to another, neither of them beyond the stops of a piece. Colour and extinction are linear
+// there, and so is emission; constant beyond the outer stops.
+Shown mean_within(VolumeInfo volume, uint piece, float a, float b) {
+    uint low = volume.first_stop + max(piece, 1u) - 1u;
+    uint high = volume.first_stop + min(piece, volume.stop_count - 1u);
+    vec4 value_low = value_of_stop(low), value_high = value_of_stop(high); // and the emissions
+    float span = value_high.x - value_low.x;
+    float divisor = span > 0.0 ? span : 1.0;
+    float from = span > 0.0 ? min(max((a - value_low.x) / divisor, 0.0), 1.0) : 0.0;
+    float to = span > 0.0 ? min(max((b - value_low.x) / divisor, 0.0), 1.0) : 0.0;
+    float middle = 0.5 * (from + to), width = to - from;
+    vec4 color_low = color_of_stop(low);
+    vec4 change = color_of_stop(high) - color_low;
+    vec4 color = color_low + middle * change;
+    float bend = (width * width) * 8.33333333e-2;
+    vec3 scattering = color.xyz * color.w + (bend * change.w) * change.xyz;
+    return Shown(vec4(scattering, color.w), value_low.yzw + middle * (value_high.yzw - value_low.yzw));
+}
+
+// The mean of the transfer function over all scalars from one to another: pre-integration (Engel et al. 2001), exact
+// between stops. What lies between the outer two pieces comes from integrals that the plan made, in two floats each.
+Shown mean_of(VolumeInfo volume, float a, float b) {
+    float low = min(a, b), high = max(a, b);
+    uvec2 pieces = pieces_of(volume, vec2(low, high));
+    bool several = pieces.x < pieces.y;
+    uint first = volume.first_stop + min(pieces.x, volume.stop_count - 1u); // the first stop above the lower scalar
+    float end = several ? value_of_stop(first).x : high;
+    Shown mean = mean_within(volume, pieces.x, low, end);
+    uint others = several ? 1u : 0u;
+    while (others > 0u) {
+        --others;
+        uint last = volume.first_stop + pieces.y - 1u; // the last stop not above the higher one
+        float begin = value_of_stop(last).x;
+        Shown upper = mean_within(volume, pieces.y, begin, high);
+        float lower_part = end - low, upper_part = high - begin, inverse = 1.0 / (high - low);
+        vec4 scattering = (integral_to(last, 2u) - integral_to(first, 2u)) + (integral_to(last, 3u) - integral_to(first, 3u));
+        vec4 emission = (integral_to(last, 4u) - integral_to(first, 4u)) + (integral_to(last, 5u) - integral_to(first, 5u));
+        mean.scattering =
+            ((lower_part * mean.scattering + upper_part * upper.scattering) + scattering) * inverse;
+        mean.emission = ((lower_part * mean.emission + upper_part * upper.emission) + emission.xyz) * inverse;
+    }
+    return mean;
 }
 #endif

@@ -435,7 +435,7 @@ fn maximum_and_average_show_one_scalar_of_the_whole_ray() {
             let d = direction(i, j);
             let [enter, leave] = way(&set, radius, d);
             let scalars: Vec<f64> = (0..)
-                .map(|k| enter + (f64::from(k) + 0.5) * step)
+                .map(|k| enter + (f64::from(k) + 1.0) * step)
                 .take_while(|t| *t < leave)
                 .filter_map(|t| direct(&set, &values, [0, 1, 2].map(|a| EYE[a] + t * d[a]), radius))
                 .collect();

@@ -360,7 +360,7 @@ impl Input {
         if let Some(projection) = &plan.projection {
             note_projection(projection, progress);
         }
-        for warning in &plan.coarse {
+        for warning in plan.coarse.iter().chain(&plan.long_steps) {
             progress.warn(&format!("{warning}"));
         }
         for doubt in &plan.doubts {

@@ -298,6 +298,8 @@ constants! {
     TREE_BOXES = 53;
     /// Binding of `tree_nodes`: the nodes.
     TREE_NODES = 54;
+    /// Binding of `march`: the ends of steps by ray and volume.
+    MARCH_ENDS = 55;
     /// [`WaveParams::flags`]: rays come from the camera.
     WAVE_FROM_CAMERA = 1;
     /// [`WaveParams::flags`]: all rays have the camera's path, but for the pixel.
@@ -362,6 +364,8 @@ constants! {
     VOLUME_AVERAGE = 2;
     /// [`VolumeInfo::mode`]: the surface where the scalar is one number.
     VOLUME_ISOSURFACE = 3;
+    /// What a ray shows: the integral of the scalar.
+    VOLUME_INTEGRAL = 4;
     /// [`VolumeInfo::shading`]: colours are emitted.
     VOLUME_EMITS = 0;
     /// [`VolumeInfo::shading`]: Lambert's law, with the scalar's gradient for a normal.
@@ -1139,12 +1143,12 @@ pub struct Path {
     pub media: [u32; MEDIA_WORDS as usize],
     /// What volumes on its way have sent to the pixel.
     pub emitted: [f32; 3],
-    /// Of the volumes on the way from the camera.
-    pub coverage: f32,
+    /// Optical depth of the volumes on its way so far, which is no part of the throughput.
+    pub depth: f32,
 }
 gpu_layout!(Path, 80, {
     throughput: 0, pixel: 12, channels: 16, bounces: 20, crossings: 24, media_count: 28, media: 32,
-    emitted: 64, coverage: 76,
+    emitted: 64, depth: 76,
 });
 
 /// A field between points (\[T\] §6).
@@ -1210,7 +1214,8 @@ pub struct VolumePoint {
 }
 gpu_layout!(VolumePoint, 16, { position: 0, scalar: 12 });
 
-/// A stop of a transfer function.
+/// A stop of a transfer function, ascending in value. Integrals are those from the first stop to this one, each of them
+/// the sum of two numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct VolumeStop {
@@ -1220,44 +1225,61 @@ pub struct VolumeStop {
     pub extinction: f32,
     /// The scalar at this stop.
     pub value: f32,
-    /// Unused.
-    pub pad: [u32; 3],
+    /// Radiance per unit of length.
+    pub emission: [f32; 3],
+    /// Of the colour times the extinction, and of the extinction.
+    pub scattering_integral: [f32; 4],
+    /// The second numbers of these.
+    pub scattering_rest: [f32; 4],
+    /// Of the emission; the fourth is 0.
+    pub emission_integral: [f32; 4],
+    /// The second numbers of these.
+    pub emission_rest: [f32; 4],
 }
-gpu_layout!(VolumeStop, 32, { color: 0, extinction: 12, value: 16, pad: 20 });
+gpu_layout!(VolumeStop, 96, {
+    color: 0, extinction: 12, value: 16, emission: 20, scattering_integral: 32, scattering_rest: 48,
+    emission_integral: 64, emission_rest: 80,
+});
 
-/// How far a ray has marched through volumes.
+/// How far a ray has marched through volumes. Sums over its way are of two numbers: what rounding added is taken from
+/// the next term.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct March {
     /// Emitted towards its start so far; of other modes than emission, the greatest scalar or the integral
     /// of all, and the length in reach.
     pub color: [f32; 3],
-    /// What comes through from behind.
-    pub transmittance: f32,
-    /// Of this sample, each volume's by its extinction.
-    pub sample_color: [f32; 3],
-    /// Of this sample.
-    pub sample_extinction: f32,
+    /// Optical depth.
+    pub depth: f32,
+    /// What rounding added to the colour.
+    pub color_lost: [f32; 3],
+    /// What rounding added to the depth.
+    pub depth_lost: f32,
+    /// What this step sends per length, of the volumes so far.
+    pub step_color: [f32; 3],
+    /// Of this step.
+    pub step_extinction: f32,
     /// Of this volume's scalar.
     pub numerator: f32,
     /// Of this volume's scalar.
     pub denominator: f32,
-    /// 0: not begun, 1: on its way, 2: done.
+    /// 0: not begun, 1: on its way, 2: done, 3: once more, for `along`.
     pub state: u32,
-    /// Sample.
+    /// End of a step.
     pub place: u32,
     /// Volume.
     pub volume: u32,
-    /// Of cells around the sample.
+    /// Of cells around the place.
     pub row: u32,
     /// Points of the row that are done.
     pub cursor: u32,
-    /// Unused.
-    pub pad: u32,
+    /// For the channels of volumes: the depth along the viewing axis where half of what is lost is lost, or below 0;
+    /// of other modes than emission, the scalar that is shown.
+    pub along: f32,
 }
-gpu_layout!(March, 64, {
-    color: 0, transmittance: 12, sample_color: 16, sample_extinction: 28, numerator: 32,
-    denominator: 36, state: 40, place: 44, volume: 48, row: 52, cursor: 56, pad: 60,
+gpu_layout!(March, 80, {
+    color: 0, depth: 12, color_lost: 16, depth_lost: 28, step_color: 32, step_extinction: 44, numerator: 48,
+    denominator: 52, state: 56, place: 60, volume: 64, row: 68, cursor: 72, along: 76,
 });
 
 /// What a sample of a lit volume needs beside its scalar.
@@ -1338,6 +1360,8 @@ gpu_layout!(PointLightParams, 16, { first: 0, count: 4, light: 8, volume: 12 });
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct MarchParams {
+    /// Viewing axis.
+    pub forward: [f32; 3],
     /// Rays.
     pub ray_count: u32,
     /// Volumes of the scene.
@@ -1348,9 +1372,13 @@ pub struct MarchParams {
     pub work: u32,
     /// Lights, where volumes are lit.
     pub light_count: u32,
+    /// 1: `along` is asked for.
+    pub wants_depth: u32,
+    /// Unused.
+    pub pad: [u32; 3],
 }
-gpu_layout!(MarchParams, 20, {
-    ray_count: 0, volume_count: 4, step: 8, work: 12, light_count: 16,
+gpu_layout!(MarchParams, 48, {
+    forward: 0, ray_count: 12, volume_count: 16, step: 20, work: 24, light_count: 28, wants_depth: 32, pad: 36,
 });
 
 /// Light at a diffuse hit.
@@ -1398,11 +1426,11 @@ pub struct FilmPixel {
     pub counts: [u32; 4],
     /// 1 less what each channel lets through of the background, by glass and volumes alone.
     pub alpha: [f32; 3],
-    /// Unused.
-    pub pad: u32,
+    /// Of volumes on the camera ray's way, as in [`March`].
+    pub along: f32,
 }
 gpu_layout!(FilmPixel, 80, {
-    color: 0, position_depth: 16, normal_object: 32, counts: 48, alpha: 64, pad: 76,
+    color: 0, position_depth: 16, normal_object: 32, counts: 48, alpha: 64, along: 76,
 });
 
 /// A pixel's samples so far.

@@ -52,6 +52,8 @@ pub(crate) struct Findings {
     pub missing: Vec<crate::Missing>,
     /// What was chosen.
     pub chosen: Vec<Chosen>,
+    /// Steps through volumes that are too long for the data.
+    pub long_steps: Vec<String>,
 }
 
 impl Findings {

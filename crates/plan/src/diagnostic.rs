@@ -138,7 +138,7 @@ mod tests {
             normal_object: [0.0, 0.0, 1.0, 0.0],
             counts: [40, 5, 0, 0],
             alpha: [1.0; 3],
-            pad: 0,
+            along: 0.0,
         };
         assert_eq!(values(&pixel), [7.0, 40.0, 5.0, 0.0, 0.5, 2.0]);
         pixel.counts[2] = 1;
@@ -155,7 +155,7 @@ mod tests {
             normal_object: [0.0, 0.0, 0.0, -1.0],
             counts: [40, 5, NONE, 0],
             alpha: [0.0; 3],
-            pad: 0,
+            along: 0.0,
         };
         assert_eq!(values(&pixel), [-1.0, 40.0, 5.0, 0.0, -1.0, -1.0]);
     }

@@ -17,6 +17,7 @@ mod discs;
 mod environment;
 mod error;
 mod extra;
+mod field;
 mod filter;
 mod first_view;
 mod frame;
@@ -31,6 +32,7 @@ mod objects;
 mod picture;
 mod precision;
 mod shapes;
+mod transfer;
 mod volumes;
 
 pub use camera::View;
@@ -75,6 +77,8 @@ const TILE_WIDTH: u32 = layout::STATE_ROW;
 pub const CENTER: u32 = NONE;
 /// Rays of a wave at most: their state is 128 MiB.
 const WAVE_RAYS: u32 = 1 << 20;
+/// Volumes of a scene, for so many rays.
+const VOLUMES_A_RAY: u32 = 8;
 /// Sides of the blocks of pixels whose rays lie together.
 const BLOCK: u32 = 8;
 
@@ -155,6 +159,8 @@ pub struct Plan {
     pub coarse: Vec<String>,
     /// Objects of glass of which it is in doubt whether the eye is inside, one sentence each.
     pub doubts: Vec<String>,
+    /// Where steps through volumes are too long for the data, one sentence an object.
+    pub long_steps: Vec<String>,
     /// How many isolated points each object lost (`drop_isolated`).
     pub isolated: Vec<u64>,
     /// The strays of each object that has any, by its index.
@@ -343,6 +349,7 @@ impl Plan {
             doubts,
             missing: found.missing,
             chosen: found.chosen,
+            long_steps: found.long_steps,
             diagnostics: Vec::new(),
             extras: Vec::new(),
             aovs: true,
@@ -397,8 +404,20 @@ impl Plan {
             media_count: self.camera_media.len() as u32,
             media,
             emitted: [0.0; 3],
-            coverage: 0.0,
+            depth: 0.0,
         }
+    }
+
+    /// Whether it is asked for where volumes take the camera's light.
+    #[must_use]
+    pub fn wants_volume_depth(&self) -> bool {
+        self.extras.contains(&Extra::Volume)
+    }
+
+    /// Whether any channel of volumes is asked for.
+    #[must_use]
+    pub fn wants_along(&self) -> bool {
+        self.extras.iter().any(|extra| matches!(extra, Extra::Volume | Extra::Value))
     }
 
     /// Whether any surface sends rays on.
@@ -418,7 +437,9 @@ impl Plan {
     #[must_use]
     pub fn tiles(&self) -> Vec<Window> {
         let width = TILE_WIDTH.min(self.window.size[0].next_multiple_of(BLOCK));
-        let rows = WAVE_RAYS / self.rays_per_pixel() / width;
+        // What a ray keeps of each volume is in one buffer.
+        let volumes = (self.volumes.infos.len() as u32).div_ceil(VOLUMES_A_RAY).max(1);
+        let rows = (WAVE_RAYS / self.rays_per_pixel() / width / volumes).max(BLOCK);
         let sides = [width, rows / BLOCK * BLOCK];
         let starts = |axis: usize| {
             let (first, count) = (self.window.origin[axis], self.window.size[axis]);

@@ -121,7 +121,7 @@ impl Picture {
                     plane[at] = diagnostic.value(pixel, fitted);
                 }
                 for extra in &plan.extras {
-                    let values = extra.values(world);
+                    let values = extra.values(world, pixel.along, &plan.volumes);
                     for (value, (_, plane)) in
                         values[..extra.channels().len()].iter().zip(&mut planes)
                     {

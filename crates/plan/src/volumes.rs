@@ -4,19 +4,21 @@
 use crate::PlanError;
 use crate::bulk::Bulk;
 use crate::chosen::Findings;
-use crate::colors::{attribute_values, mapped};
+use crate::colors::attribute_values;
+use crate::field;
 use crate::missing::{Lacking, Missing};
 use crate::neighborhoods::{length, open_points, spacing};
+use crate::transfer::{own_range, stops_of};
 use kernels::layout::{
     CELL_ABOVE, CELL_BELOW, CELL_LOOK, CELL_NOTHING, GridInfo, Polynomial, VOLUME_AVERAGE,
-    VOLUME_EMISSION, VOLUME_EMITS, VOLUME_GRADIENT, VOLUME_ISOSURFACE, VOLUME_LIGHTS,
-    VOLUME_MAXIMUM, VOLUME_SCATTERS, VOLUME_SHEPARD, VOLUME_SPH, VOLUME_SUM, VolumeCell,
-    VolumeInfo, VolumePoint, VolumeStop,
+    VOLUME_EMISSION, VOLUME_EMITS, VOLUME_GRADIENT, VOLUME_INTEGRAL, VOLUME_ISOSURFACE,
+    VOLUME_LIGHTS, VOLUME_MAXIMUM, VOLUME_SCATTERS, VOLUME_SHEPARD, VOLUME_SPH, VOLUME_SUM,
+    VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
 };
 use points::{Cloud, PointSet, Watch};
 use scene::{
-    Boundary, ColorMap, MaterialKind, Object, PerParticle, Scene, Transfer, Volume, VolumeKernel,
-    VolumeMode, VolumeShading,
+    Boundary, MaterialKind, Object, PerParticle, Scene, Transfer, Volume, VolumeKernel, VolumeMode,
+    VolumeShading,
 };
 use std::sync::Arc;
 
@@ -24,9 +26,6 @@ use std::sync::Arc;
 const MOST_SAMPLES: f64 = 16_000_000.0;
 /// Cells along the longest axis: more cost more memory than they save samples.
 const MOST_CELLS: f64 = 160.0;
-
-/// Stops that a map of colours becomes.
-const MAP_STOPS: u32 = 65;
 
 /// All volumes of a scene, as plain data.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -41,7 +40,7 @@ pub struct Volumes {
     pub inverse_lengths: Vec<f32>,
     /// Of all transfer functions.
     pub stops: Vec<VolumeStop>,
-    /// Distance of the samples along a ray: the shortest that a volume asks for.
+    /// Length of the steps along a ray: the shortest that a volume asks for.
     pub step: f32,
 }
 
@@ -145,12 +144,15 @@ pub(crate) fn plan_volumes(
                 (VolumePoint { position, scalar: of.scalar as f32 }, inverse_length)
             })
             .collect();
-        let stops =
-            volume.transfer.as_ref().map_or(vec![NO_STOP], |transfer| stops_of(transfer, &scalars));
-        if let Some(Transfer::Map { range: None, .. }) = &volume.transfer {
-            found.range(index, "volume.value_range", own_range(&scalars));
-        }
+        let stops = stops_of(volume.transfer.as_ref(), || own_range(&scalars));
         let lengths = volumes.add(index as u32, object, volume, radius as f32, (points, stops));
+        if let Some(Transfer::Map { range: None, .. }) = &volume.transfer {
+            let range = match volume.mode {
+                VolumeMode::Integral => volumes.bound_integral(volume.transfer.as_ref()),
+                _ => own_range(&scalars),
+            };
+            found.range(index, "volume.value_range", range);
+        }
         let is_sph = matches!(volume.kernel, VolumeKernel::Sph { .. });
         for (key, length, is_given) in [
             ("volume.radius", radius, is_sph || volume.radius.is_some()),
@@ -164,6 +166,11 @@ pub(crate) fn plan_volumes(
     }
     if volumes.infos.iter().all(|info| info.kernel != VOLUME_SPH) {
         volumes.inverse_lengths = vec![0.0];
+    }
+    for (info, object) in
+        volumes.infos.iter().map(|info| (info, &scene.objects[info.object as usize]))
+    {
+        found.long_steps.extend(field::long_step(&volumes, info, object));
     }
     // Floats count no farther, so a ray of more samples would end too soon.
     let corner = |of: fn(&VolumeInfo) -> [f32; 3], pick: fn(f32, f32) -> f32| {
@@ -179,7 +186,7 @@ pub(crate) fn plan_volumes(
     }
     let name = |info: &VolumeInfo| scene.objects[info.object as usize].name.clone();
     let count = volumes.infos.len();
-    let alone = |info: &&VolumeInfo| [VOLUME_MAXIMUM, VOLUME_AVERAGE].contains(&info.mode);
+    let alone = |info: &&VolumeInfo| is_whole(info);
     if let Some(info) = volumes.infos.iter().find(alone).filter(|_| count > 1) {
         return Err(PlanError::SeveralVolumes { name: name(info), count });
     }
@@ -200,9 +207,10 @@ pub(crate) fn plan_volumes(
     Ok(volumes)
 }
 
-/// The transfer function of a volume that has none.
-const NO_STOP: VolumeStop =
-    VolumeStop { color: [0.8; 3], extinction: 0.0, value: 0.0, pad: [0; 3] };
+/// Whether one scalar stands for the whole way of a ray.
+fn is_whole(info: &VolumeInfo) -> bool {
+    [VOLUME_MAXIMUM, VOLUME_AVERAGE, VOLUME_INTEGRAL].contains(&info.mode)
+}
 
 /// Lengths of a volume as they are, given or chosen.
 struct Lengths {
@@ -269,6 +277,12 @@ impl Volumes {
         self.infos.iter().any(|info| info.mode != VOLUME_ISOSURFACE)
     }
 
+    /// Whether the only volume shows one scalar for the whole way of a ray.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.infos.first().is_some_and(is_whole)
+    }
+
     /// Whether there are isosurfaces.
     #[must_use]
     pub fn any_isosurface(&self) -> bool {
@@ -326,6 +340,18 @@ impl Volumes {
             + size_of_val(self.stops.as_slice())) as u64
     }
 
+    /// Gives the last volume, which shows integrals, the stops of a transfer function up to what no ray exceeds, and
+    /// returns that range.
+    fn bound_integral(&mut self, transfer: Option<&Transfer>) -> [f64; 2] {
+        let Some(mut info) = self.infos.pop() else { return [0.0; 2] };
+        let range = field::bound_of_integrals(self, &info);
+        self.stops.truncate(info.first_stop as usize);
+        self.stops.extend(stops_of(transfer, || range));
+        info.stop_count = self.stops.len() as u32 - info.first_stop;
+        self.infos.push(info);
+        range
+    }
+
     fn add(
         &mut self,
         index: u32,
@@ -368,6 +394,7 @@ impl Volumes {
                 VolumeMode::Emission => VOLUME_EMISSION,
                 VolumeMode::Maximum => VOLUME_MAXIMUM,
                 VolumeMode::Average => VOLUME_AVERAGE,
+                VolumeMode::Integral => VOLUME_INTEGRAL,
                 VolumeMode::Isosurface(_) => VOLUME_ISOSURFACE,
             },
             iso: match volume.mode {
@@ -385,13 +412,13 @@ impl Volumes {
                 VolumeShading::Scatter => VOLUME_SCATTERS,
             },
         };
-        self.list(&info, &points);
+        self.list(&info, &points, step);
         self.infos.push(info);
         Lengths { smoothing: smoothing.into(), step: step.into() }
     }
 
     /// Counts, adds up and scatters the points, in their order, and says which cells may show anything.
-    fn list(&mut self, info: &VolumeInfo, points: &[(VolumePoint, f32)]) {
+    fn list(&mut self, info: &VolumeInfo, points: &[(VolumePoint, f32)], step: f32) {
         let grid = &info.grid;
         let base = self.points.len();
         let cell_of: Vec<usize> = points.iter().map(|(p, _)| cell_of(grid, p.position)).collect();
@@ -411,7 +438,7 @@ impl Volumes {
             self.inverse_lengths[base + next[cell] as usize] = *inverse_length;
             next[cell] += 1;
         }
-        let seen = self.cells_seen(info, points, &cell_of);
+        let seen = self.cells_seen(info, points, &cell_of, step);
         self.cells.extend(
             first
                 .iter()
@@ -421,12 +448,15 @@ impl Volumes {
     }
 
     /// What may be seen from each cell: something, where there are points in the cells around, and some
-    /// value that they can have together has an extinction; or on which side of an isosurface all of it is.
+    /// value that they can have together has an extinction or an emission; or on which side of an isosurface all of it
+    /// is. What counts for a place counts for the steps that end there, too: of a step with an end in a cell from which
+    /// nothing is seen, nothing is seen.
     fn cells_seen(
         &self,
         info: &VolumeInfo,
         points: &[(VolumePoint, f32)],
         cell_of: &[usize],
+        step: f32,
     ) -> Vec<u32> {
         let [nx, ny, nz] = info.grid.resolution.map(|n| n as usize);
         let none = (f32::INFINITY, f32::NEG_INFINITY, 0u32);
@@ -436,7 +466,9 @@ impl Volumes {
         for ((point, _), &cell) in points.iter().zip(cell_of) {
             ranges[cell] = merge(ranges[cell], (point.scalar, point.scalar, 1));
         }
-        let reach = (info.square_radius.sqrt() * info.grid.inverse_edge).ceil() as usize + 1;
+        // Of a place in the cell, and of the ends of the steps that end there.
+        let cells = (info.square_radius.sqrt() + step) * info.grid.inverse_edge;
+        let reach = ((cells + 1e-3).min(MOST_CELLS as f32)) as usize + 1;
         // The box around a cell, one axis after the other.
         for (stride, count) in [(1, nx), (nx, ny), (nx * ny, nz)] {
             let before = ranges.clone();
@@ -462,7 +494,7 @@ impl Volumes {
                 VOLUME_ISOSURFACE if high + margin < info.iso => CELL_BELOW,
                 VOLUME_ISOSURFACE if low - margin > info.iso => CELL_ABOVE,
                 VOLUME_ISOSURFACE => CELL_LOOK,
-                VOLUME_EMISSION if !self.has_extinction(info, low, high) => CELL_NOTHING,
+                VOLUME_EMISSION if !self.shows(info, low, high) => CELL_NOTHING,
                 // What cannot be seen counts too, where not each place is seen for itself.
                 _ => CELL_LOOK,
             }
@@ -470,72 +502,32 @@ impl Volumes {
         ranges.into_iter().map(seen).chain([CELL_NOTHING]).collect()
     }
 
-    /// Whether the transfer function is above zero anywhere from `low` to `high`, and a rounding farther.
-    fn has_extinction(&self, info: &VolumeInfo, low: f32, high: f32) -> bool {
+    /// Whether the transfer function shows anything from `low` to `high`, and a rounding farther.
+    fn shows(&self, info: &VolumeInfo, low: f32, high: f32) -> bool {
         let margin = rounding(low, high);
         let (low, high) = (low - margin, high + margin);
         let first = info.first_stop as usize;
         let stops = &self.stops[first..first + info.stop_count as usize];
-        let inside = stops.iter().any(|s| s.extinction > 0.0 && s.value >= low && s.value <= high);
+        let sends = |stop: &VolumeStop| stop.extinction > 0.0 || stop.emission != [0.0; 3];
+        let inside = stops.iter().any(|s| sends(s) && s.value >= low && s.value <= high);
         // Linear between stops: only its ends, and what the outer stops mean beyond them.
         let pieces = stops.windows(2).any(|pair| {
             pair[0].value <= high
                 && pair[1].value >= low
-                && (pair[0].extinction > 0.0 && pair[1].value > low
-                    || pair[1].extinction > 0.0 && pair[0].value < high)
+                && (sends(&pair[0]) && pair[1].value > low
+                    || sends(&pair[1]) && pair[0].value < high)
         });
         let (Some(least), Some(last)) = (stops.first(), stops.last()) else { return false };
         inside
             || pieces
-            || (low <= least.value && least.extinction > 0.0)
-            || (high >= last.value && last.extinction > 0.0)
+            || (low <= least.value && sends(least))
+            || (high >= last.value && sends(last))
     }
 }
 
 /// How far beyond the greatest and least of some values rounding may take what is made of them.
 fn rounding(low: f32, high: f32) -> f32 {
     1e-5 * low.abs().max(high.abs())
-}
-
-/// A transfer function as stops.
-fn stops_of(transfer: &Transfer, scalars: &[f64]) -> Vec<VolumeStop> {
-    match transfer {
-        Transfer::Stops(stops) => stops
-            .iter()
-            .map(|stop| VolumeStop {
-                color: stop.color.map(|c| c as f32),
-                extinction: stop.extinction as f32,
-                value: stop.value as f32,
-                pad: [0; 3],
-            })
-            .collect(),
-        Transfer::Map { color_map, range, extinction } => {
-            let [low, high] = range.unwrap_or_else(|| own_range(scalars));
-            map_stops(*color_map, [low, high], *extinction)
-        }
-    }
-}
-
-/// From the lowest scalar to the highest.
-fn own_range(scalars: &[f64]) -> [f64; 2] {
-    let finite = || scalars.iter().copied().filter(|scalar| (*scalar as f32).is_finite());
-    let low = finite().fold(f64::INFINITY, f64::min);
-    let high = finite().fold(f64::NEG_INFINITY, f64::max);
-    if low <= high { [low, high] } else { [0.0, 1.0] }
-}
-
-/// Even stops on a map; the middle of the map alone where all scalars are one.
-fn map_stops(map: ColorMap, [low, high]: [f64; 2], extinction: [f64; 2]) -> Vec<VolumeStop> {
-    let stop = |part: f64| VolumeStop {
-        color: mapped(map, part),
-        extinction: (extinction[0] + part * (extinction[1] - extinction[0])) as f32,
-        value: (low + part * (high - low)) as f32,
-        pad: [0; 3],
-    };
-    if low >= high {
-        return vec![stop(0.5)];
-    }
-    (0..MAP_STOPS).map(|i| stop(f64::from(i) / f64::from(MAP_STOPS - 1))).collect()
 }
 
 /// Cells of an edge of the radius, over the points' bounding box grown by it, and the highest corner of that.

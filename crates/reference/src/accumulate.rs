@@ -58,7 +58,7 @@ mod tests {
             normal_object: [counts[1] as f32; 4],
             counts,
             alpha: [color; 3],
-            pad: 0,
+            along: 0.0,
         }
     }
 

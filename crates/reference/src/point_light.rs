@@ -50,8 +50,8 @@ pub fn point_lights<R: Real>(
                     ray.hit_t = sample.distance;
                     grid_trace(&mut ray, &levels, &reference.lists, &reference.polynomials, true);
                     if ray.hit_slot == NONE && !blocks(&ray, ray.hit_t, volumes) {
-                        *of_light = march(&ray, ray.hit_t, &media, volumes, &plan.objects, None)
-                            .transmittance;
+                        let march = march(&ray, ray.hit_t, &media, volumes, &plan.objects, None);
+                        *of_light = (-march.depth).exp_negative();
                     }
                 }
             });

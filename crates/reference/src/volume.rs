@@ -7,13 +7,18 @@ use crate::media::{Media, transmittance};
 use crate::real::{NO_HIT, Real, V3};
 use kernels::layout::{
     CELL_NOTHING, Light, ObjectInfo, VOLUME_AVERAGE, VOLUME_EMITS, VOLUME_GRADIENT,
-    VOLUME_ISOSURFACE, VOLUME_LIGHTS, VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo,
+    VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_LIGHTS, VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH,
+    VolumeInfo, VolumeStop,
 };
 use plan::Volumes;
 use std::f64::consts::FRAC_1_PI;
 
-/// Transmittance that still counts.
-const FEWEST: f64 = 1e-30;
+/// Optical depth through which nothing is seen, a transmittance of 1e-30.
+const DEEPEST: f64 = 69.077_552_8;
+/// The optical depth from there on.
+const OPAQUE: f64 = NO_HIT;
+/// Scalar.
+const LARGEST: f64 = 1e38;
 pub(crate) const MOST_SAMPLES: f64 = 16_777_216.0;
 /// A gradient over a point's reach, by the scalar: less is rounding.
 const FLATTEST: f32 = 1e-5;
@@ -23,29 +28,91 @@ const FLATTEST: f32 = 1e-5;
 pub struct March<R> {
     /// Emitted towards its start.
     pub color: V3<R>,
-    /// What comes through from behind.
-    pub transmittance: R,
+    /// Optical depth.
+    pub depth: R,
+    /// What channels of volumes show (`March::along` in `glsl/shared/layout.glsl`).
+    pub along: R,
 }
 
-/// Colour and extinction of a scalar: linear between stops, constant beyond the outer ones.
-pub fn transfer<R: Real>(volume: &VolumeInfo, volumes: &Volumes, scalar: R) -> (V3<R>, R) {
-    let first = volume.first_stop as usize;
-    let stops = &volumes.stops[first..first + volume.stop_count as usize];
-    let above = stops[1..].partition_point(|stop| R::of_f32(stop.value) <= scalar);
-    let (from, to) = (&stops[above], &stops[(above + 1).min(stops.len() - 1)]);
-    let span = R::of_f32(to.value) - R::of_f32(from.value);
+/// Means of a transfer function: what is sent along the ray per length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shown<R> {
+    /// Colour by extinction.
+    pub scattering: V3<R>,
+    /// σ
+    pub extinction: R,
+    /// Radiance per length.
+    pub emission: V3<R>,
+}
+
+impl<R: Real> Shown<R> {
+    /// Two of them, each number by number.
+    fn zip(self, other: Self, f: impl Fn(R, R) -> R) -> Self {
+        Self {
+            scattering: self.scattering.zip(other.scattering, &f),
+            extinction: f(self.extinction, other.extinction),
+            emission: self.emission.zip(other.emission, &f),
+        }
+    }
+
+    fn times(self, s: R) -> Self {
+        self.zip(self, |x, _| s * x)
+    }
+
+    /// One of the integrals from the first stop on.
+    fn integral(of: [f32; 4], emission: [f32; 4]) -> Self {
+        let [x, y, z, extinction] = of.map(R::of_f32);
+        let [r, g, b, _] = emission.map(R::of_f32);
+        Self { scattering: V3([x, y, z]), extinction, emission: V3([r, g, b]) }
+    }
+}
+
+/// The mean from one scalar to another, neither of them beyond the stops of a piece. Colour, extinction and emission
+/// are linear there; constant beyond the outer stops.
+fn mean_within<R: Real>(stops: &[VolumeStop], piece: usize, a: R, b: R) -> Shown<R> {
+    let (low, high) = (&stops[piece.max(1) - 1], &stops[piece.min(stops.len() - 1)]);
     let (zero, one) = (R::of(0.0), R::of(1.0));
-    let part = if span > zero {
-        ((scalar - R::of_f32(from.value)) / span).max(zero).min(one)
-    } else {
-        zero
+    let span = R::of_f32(high.value) - R::of_f32(low.value);
+    let part = |at: R| {
+        if span > zero { ((at - R::of_f32(low.value)) / span).max(zero).min(one) } else { zero }
     };
-    let colors = [V3::of_f32(from.color), V3::of_f32(to.color)];
-    let extinctions = [R::of_f32(from.extinction), R::of_f32(to.extinction)];
-    (
-        colors[0] + (colors[1] - colors[0]).times(part),
-        extinctions[0] + part * (extinctions[1] - extinctions[0]),
-    )
+    let (from, to) = (part(a), part(b));
+    let (middle, width) = (R::of(0.5) * (from + to), to - from);
+    let color_low = V3::of_f32(low.color);
+    let color_change = V3::of_f32(high.color) - color_low;
+    let extinction_low = R::of_f32(low.extinction);
+    let extinction_change = R::of_f32(high.extinction) - extinction_low;
+    let color = color_low + color_change.times(middle);
+    let extinction = extinction_low + middle * extinction_change;
+    let bend = (width * width) * R::of(1.0 / 12.0);
+    let emission_low = V3::of_f32(low.emission);
+    Shown {
+        scattering: color.times(extinction) + color_change.times(bend * extinction_change),
+        extinction,
+        emission: emission_low + (V3::of_f32(high.emission) - emission_low).times(middle),
+    }
+}
+
+/// The mean of the transfer function over all scalars from one to another: pre-integration (Engel et al. 2001), exact
+/// between stops.
+pub fn mean_of<R: Real>(volume: &VolumeInfo, volumes: &Volumes, a: R, b: R) -> Shown<R> {
+    let first_stop = volume.first_stop as usize;
+    let stops = &volumes.stops[first_stop..first_stop + volume.stop_count as usize];
+    let (low, high) = (a.min(b), a.max(b));
+    let piece = |scalar: R| stops.partition_point(|stop| R::of_f32(stop.value) <= scalar);
+    let (lower, upper) = (piece(low), piece(high));
+    if lower == upper {
+        return mean_within(stops, lower, low, high);
+    }
+    let (first, last) = (&stops[lower], &stops[upper - 1]);
+    let (end, begin) = (R::of_f32(first.value), R::of_f32(last.value));
+    let inverse = R::of(1.0) / (high - low);
+    let parts = (mean_within(stops, lower, low, end).times(end - low))
+        .zip(mean_within(stops, upper, begin, high).times(high - begin), |x, y| x + y);
+    let between = |of: fn(&VolumeStop) -> Shown<R>| of(last).zip(of(first), |x, y| x - y);
+    let integral = between(|s| Shown::integral(s.scattering_integral, s.emission_integral))
+        .zip(between(|s| Shown::integral(s.scattering_rest, s.emission_rest)), |x, y| x + y);
+    parts.zip(integral, |x, y| x + y).times(inverse)
 }
 
 /// Monaghan's cubic spline times π h³, at q = d/h: 1 − 3/2 q² + 3/4 q³ below 1, (2 − q)³/4 below 2.
@@ -165,14 +232,19 @@ impl<R: Real> Sums<R> {
     }
 }
 
-/// Whether anything may be seen from x.
-pub(crate) fn may_be_seen<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>) -> bool {
+/// What may be seen from x's cell, one of `CELL_*`; `None` out of the grid.
+fn cell_at<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>) -> Option<u32> {
     let grid = Grid::<R>::from(&volume.grid);
     let off = (x - grid.origin).times(grid.inverse_edge);
     let inside = (0..3)
         .all(|axis| off.0[axis] >= R::of(0.0) && off.0[axis] < R::of_u32(grid.resolution[axis]));
-    let cell = |at: [u32; 3]| &volumes.cells[(volume.first_cell + grid.cell_id(at)) as usize];
-    inside && cell(grid.cell_of(x)).counts != CELL_NOTHING
+    let cell = |at: [u32; 3]| volumes.cells[(volume.first_cell + grid.cell_id(at)) as usize].counts;
+    inside.then(|| cell(grid.cell_of(x)))
+}
+
+/// Whether anything may be seen from x.
+pub(crate) fn may_be_seen<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>) -> bool {
+    cell_at(volume, volumes, x).is_some_and(|counts| counts != CELL_NOTHING)
 }
 
 /// Hands out each point near x: its place, its weight, its weight's gradient along y = p − x, and y.
@@ -222,14 +294,182 @@ pub fn scalar_at<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>) -> O
     (denominator > R::of(0.0)).then(|| numerator / divisor)
 }
 
-/// What a ray shows of the scalar that stands for its whole way: a layer of one radius, or all of it.
+/// Kahan's summation.
+#[derive(Debug, Clone, Copy)]
+struct Sum<R> {
+    sum: R,
+    /// What rounding added to it.
+    lost: R,
+}
+
+impl<R: Real> Sum<R> {
+    fn zero() -> Self {
+        Self { sum: R::of(0.0), lost: R::of(0.0) }
+    }
+
+    fn add(&mut self, term: R) {
+        let more = term - self.lost;
+        let total = self.sum + more;
+        let left = (total - self.sum) - more;
+        self.lost = if total.abs() < R::of(NO_HIT) { left } else { R::of(0.0) };
+        self.sum = total;
+    }
+}
+
+/// What a step ends with in a volume.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum End<R> {
+    /// Nothing is seen from the cell, whatever the scalar.
+    Unseen,
+    /// No point is in reach.
+    Unreached,
+    /// The scalar, and the light.
+    At(R, V3<R>),
+}
+
+/// A step with one end in reach is so for half of its way. At the border of particles a sum is 0.
+struct Between<R> {
+    share: R,
+    from: R,
+    to: R,
+    light: V3<R>,
+}
+
+impl<R: Real> Between<R> {
+    /// `None` where nothing counts.
+    fn of(volume: &VolumeInfo, there: End<R>, here: End<R>) -> Option<Self> {
+        let half = R::of(0.5);
+        let border = |scalar| if volume.kernel == VOLUME_SPH { R::of(0.0) } else { scalar };
+        match (there, here) {
+            (End::At(from, light_there), End::At(to, light)) => {
+                let light = (light_there + light).times(half);
+                Some(Self { share: R::of(1.0), from, to, light })
+            }
+            (End::At(from, light), End::Unreached) => {
+                Some(Self { share: half, from, to: border(from), light })
+            }
+            (End::Unreached, End::At(to, light)) => {
+                Some(Self { share: half, from: border(to), to, light })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Whether one scalar stands for the whole way of a ray.
+pub(crate) fn is_whole(volume: &VolumeInfo) -> bool {
+    [VOLUME_MAXIMUM, VOLUME_AVERAGE, VOLUME_INTEGRAL].contains(&volume.mode)
+}
+
+/// What a ray shows of the scalar that stands for its whole way, from that or its integral and the length in reach: a
+/// layer of one radius, all of it, or once.
 fn shown<R: Real>(volume: &VolumeInfo, volumes: &Volumes, [scalar, way]: [R; 2]) -> March<R> {
+    let zero = R::of(0.0);
+    if !(way > zero) {
+        return March { color: V3::splat(zero), depth: zero, along: zero };
+    }
     let mean = volume.mode == VOLUME_AVERAGE;
-    let (color, extinction) = transfer(volume, volumes, if mean { scalar / way } else { scalar });
-    let thickness = if mean { way } else { R::of_f32(volume.square_radius).sqrt() };
-    let through = (-(extinction * thickness)).exp_negative();
-    let transmittance = if through < R::of(FEWEST) { R::of(0.0) } else { through };
-    March { color: color.times(R::of(1.0) - transmittance), transmittance }
+    let scalar = if mean { scalar / way } else { scalar };
+    let thickness = match volume.mode {
+        VOLUME_AVERAGE => way,
+        VOLUME_INTEGRAL => R::of(1.0),
+        _ => R::of_f32(volume.square_radius).sqrt(),
+    };
+    let seen = mean_of(volume, volumes, scalar, scalar);
+    let depth = seen.extinction * thickness;
+    let color = (seen.scattering + seen.emission).times(thickness * depth.mean_transmittance());
+    let depth = if depth > R::of(DEEPEST) { R::of(OPAQUE) } else { depth };
+    March { color, depth, along: scalar }
+}
+
+/// Where a ray passes volumes, in steps.
+struct Way<'a, R> {
+    ray: &'a Ray<R>,
+    taking_part: Vec<&'a VolumeInfo>,
+    volumes: &'a Volumes,
+    from: R,
+    span: R,
+    step: R,
+    steps: u32,
+    /// Whether it ends at the border of the volumes' boxes, where no point is in reach.
+    leaves: bool,
+}
+
+/// An end of a step, and the step before it.
+struct Place<R> {
+    x: V3<R>,
+    length: R,
+    begin: R,
+    outside: bool,
+}
+
+impl<'a, R: Real> Way<'a, R> {
+    fn of(ray: &'a Ray<R>, end: R, media: &Media, volumes: &'a Volumes) -> Self {
+        let zero = R::of(0.0);
+        let (mut from, mut to) = (R::of(NO_HIT), zero);
+        let taking_part: Vec<&VolumeInfo> = volumes
+            .infos
+            .iter()
+            .filter(|volume| volume.mode != VOLUME_ISOSURFACE)
+            .filter(|volume| volume.bounded == 0 || media.contains(volume.object))
+            .collect();
+        for volume in &taking_part {
+            let [low, high] = [volume.grid.origin, volume.high].map(V3::of_f32);
+            let [enter, leave] = within_box(low, high, ray.origin, ray.direction);
+            if enter <= leave {
+                from = from.min(if volume.bounded != 0 { zero } else { enter });
+                to = to.max(leave);
+            }
+        }
+        let step = R::of_f32(volumes.step);
+        let to = to.min(end);
+        let span = to - from;
+        let steps = (-(-(span / step)).floor()).max(zero).min(R::of(MOST_SAMPLES)).to_u32();
+        Self { ray, taking_part, volumes, from, span, step, steps, leaves: to < end }
+    }
+
+    /// Every end of a step, from the first on; none where the ray passes no volume.
+    fn places(&self) -> impl Iterator<Item = Place<R>> {
+        let count = if self.steps > 0 { self.steps + 1 } else { 0 };
+        (0..count).map(|place| {
+            let begin = R::of_u32(place.max(1) - 1) * self.step;
+            let length = if place > 0 { self.step.min(self.span - begin) } else { R::of(0.0) };
+            let t = self.from + (begin + length);
+            Place {
+                x: self.ray.origin + self.ray.direction.times(t),
+                length,
+                begin: self.from + begin,
+                outside: (place == 0 && self.from > R::of(0.0))
+                    || (place == self.steps && self.leaves),
+            }
+        })
+    }
+
+    fn look(
+        &self,
+        volume: &VolumeInfo,
+        place: &Place<R>,
+        lighting: Option<Lighting<'_, R>>,
+    ) -> End<R> {
+        let x = place.x;
+        let cell = match cell_at(volume, self.volumes, x) {
+            Some(cell) if !place.outside => cell,
+            _ => return End::Unreached,
+        };
+        if cell == CELL_NOTHING {
+            return End::Unseen;
+        }
+        let Some(scalar) = scalar_at(volume, self.volumes, x) else { return End::Unreached };
+        let scalar = scalar.max(R::of(-LARGEST)).min(R::of(LARGEST));
+        let light = match lighting {
+            Some(lighting) if volume.shading != VOLUME_EMITS => {
+                let sums = Sums::at(volume, self.volumes, x, Some(lighting));
+                sums.scattered(volume, x, self.ray.direction, lighting.lights)
+            }
+            _ => V3::splat(R::of(1.0)),
+        };
+        End::At(scalar, light)
+    }
 }
 
 /// Follows a ray that ends at `end` through all volumes. `media` are those it is inside of.
@@ -241,72 +481,103 @@ pub fn march<R: Real>(
     objects: &[ObjectInfo],
     lighting: Option<Lighting<'_, R>>,
 ) -> March<R> {
-    let (zero, one) = (R::of(0.0), R::of(1.0));
-    let (mut from, mut to) = (R::of(NO_HIT), zero);
-    let taking_part: Vec<&VolumeInfo> = volumes
-        .infos
-        .iter()
-        .filter(|volume| volume.mode != VOLUME_ISOSURFACE)
-        .filter(|volume| volume.bounded == 0 || media.contains(volume.object))
-        .collect();
-    for volume in &taking_part {
-        let [low, high] = [volume.grid.origin, volume.high].map(V3::of_f32);
-        let [enter, leave] = within_box(low, high, ray.origin, ray.direction);
-        if enter <= leave {
-            from = from.min(if volume.bounded != 0 { zero } else { enter });
-            to = to.max(leave);
-        }
-    }
+    let zero = R::of(0.0);
+    let way = Way::of(ray, end, media, volumes);
     let medium = media.medium(objects);
-    let step = R::of_f32(volumes.step);
-    let span = to.min(end) - from;
-    let samples = (-(-(span / step)).floor()).max(zero).min(R::of(MOST_SAMPLES)).to_u32();
-    let mut march = March { color: V3::splat(zero), transmittance: one };
-    let mut whole = [zero; 2]; // the greatest scalar or the integral of all, and the length in reach
-    for place in 0..samples {
-        let begin = R::of_u32(place) * step;
-        let length = step.min(span - begin);
-        let t = from + (begin + R::of(0.5) * length);
-        let x = ray.origin + ray.direction.times(t);
-        let (mut color, mut extinction) = (V3::splat(zero), zero);
-        for volume in &taking_part {
-            let Some(scalar) = scalar_at(volume, volumes, x) else { continue };
-            if volume.mode == VOLUME_MAXIMUM {
-                let greater = whole[1] <= zero || scalar > whole[0];
-                whole = [if greater { scalar } else { whole[0] }, whole[1] + length];
-            } else if volume.mode == VOLUME_AVERAGE {
-                whole = [whole[0] + length * scalar, whole[1] + length];
-            } else {
-                let (mut c, sigma) = transfer(volume, volumes, scalar);
-                if let Some(lighting) = lighting
-                    && volume.shading != VOLUME_EMITS
-                    && sigma > zero
+    let mut ends = vec![End::Unseen; way.taking_part.len()];
+    let (mut color, mut depth) = ([Sum::zero(); 3], Sum::<R>::zero());
+    let mut whole = [Sum::zero(); 2]; // the greatest scalar or the integral of all, and the length in reach
+    let mut met = false;
+    for place in way.places() {
+        let (mut step_color, mut step_extinction) = (V3::splat(zero), zero);
+        for (volume, there) in way.taking_part.iter().zip(&mut ends) {
+            let here = way.look(volume, &place, lighting);
+            let between = Between::of(volume, std::mem::replace(there, here), here);
+            if is_whole(volume) {
+                let counted = between.as_ref().map_or(zero, |of| of.share * place.length);
+                if volume.mode != VOLUME_MAXIMUM {
+                    whole[0]
+                        .add(between.map_or(zero, |of| counted * (R::of(0.5) * (of.from + of.to))));
+                } else if let End::At(scalar, _) = here
+                    && (!met || scalar > whole[0].sum)
                 {
-                    let sums = Sums::at(volume, volumes, x, Some(lighting));
-                    c = c * sums.scattered(volume, x, ray.direction, lighting.lights);
+                    whole[0].sum = scalar;
                 }
-                color = color + c.times(sigma);
-                extinction = extinction + sigma;
+                met |= matches!(here, End::At(..));
+                whole[1].add(counted);
+            } else if let Some(of) = between {
+                let mut seen = mean_of(volume, volumes, of.from, of.to);
+                if lighting.is_some() {
+                    seen.scattering = seen.scattering * of.light;
+                }
+                step_color = step_color + (seen.scattering + seen.emission).times(of.share);
+                step_extinction = step_extinction + of.share * seen.extinction;
             }
         }
-        if extinction > zero {
-            let through = (-(extinction * length)).exp_negative();
-            let color = color.over(extinction);
-            let color =
-                if medium.is_some() { color * transmittance(medium, t, objects) } else { color };
-            let emitted = color.times(march.transmittance * (one - through));
-            march.color = march.color + emitted;
-            march.transmittance = march.transmittance * through;
+        let step_depth = step_extinction * place.length;
+        if step_depth > zero || step_color.0.iter().any(|&channel| channel > zero) {
+            let lengths = if medium.is_some() {
+                let absorption =
+                    V3::of_f32(objects[medium.unwrap_or_default() as usize].absorption);
+                let depths = V3::splat(step_depth) + absorption.times(place.length);
+                V3(depths.0.map(|depth| place.length * depth.mean_transmittance()))
+                    * transmittance(medium, place.begin, objects)
+            } else {
+                V3::splat(place.length * step_depth.mean_transmittance())
+            };
+            let sent = (lengths * step_color).times((-depth.sum).exp_negative());
+            for (sum, sent) in color.iter_mut().zip(sent.0) {
+                sum.add(sent);
+            }
         }
-        if march.transmittance < R::of(FEWEST) {
-            march.transmittance = zero;
+        if step_depth > zero {
+            depth.add(step_depth);
+        }
+        if depth.sum > R::of(DEEPEST) {
+            depth.sum = R::of(OPAQUE);
             break;
         }
     }
     match volumes.infos.first() {
-        Some(only) if [VOLUME_MAXIMUM, VOLUME_AVERAGE].contains(&only.mode) && whole[1] > zero => {
-            shown(only, volumes, whole)
-        }
-        _ => march,
+        Some(only) if is_whole(only) => shown(only, volumes, whole.map(|of| of.sum)),
+        _ => March { color: V3(color.map(|of| of.sum)), depth: depth.sum, along: R::of(-1.0) },
     }
+}
+
+/// Where along the ray half of the light is lost that the volumes take on its way, which `depth` says: the first place
+/// with the transmittance (1 + T)/2. `None` where they take none.
+pub fn half_lost<R: Real>(
+    ray: &Ray<R>,
+    end: R,
+    media: &Media,
+    volumes: &Volumes,
+    depth: R,
+) -> Option<R> {
+    let wanted = (R::of(0.5) * depth.absorptance()).depth_of_absorptance();
+    if !(wanted > R::of(0.0)) {
+        return None;
+    }
+    let way = Way::of(ray, end, media, volumes);
+    let mut ends = vec![End::Unseen; way.taking_part.len()];
+    let mut depth = Sum::<R>::zero();
+    for place in way.places() {
+        let mut extinction = R::of(0.0);
+        for (volume, there) in way.taking_part.iter().zip(&mut ends) {
+            let here = way.look(volume, &place, None);
+            if let Some(of) = Between::of(volume, std::mem::replace(there, here), here) {
+                let seen = mean_of(volume, volumes, of.from, of.to);
+                extinction = extinction + of.share * seen.extinction;
+            }
+        }
+        let step_depth = extinction * place.length;
+        let missing = wanted - depth.sum;
+        if step_depth > R::of(0.0) && step_depth >= missing {
+            let part = missing.max(R::of(0.0)) / step_depth;
+            return Some(place.begin + place.length * part);
+        }
+        if step_depth > R::of(0.0) {
+            depth.add(step_depth);
+        }
+    }
+    None
 }

@@ -18,7 +18,7 @@ use crate::real::{NO_HIT, Real, V3};
 use crate::sampler::sample_1d;
 use crate::shade::{lambert, place_on_light, shadow_ray};
 use crate::surface_hit::Hit;
-use crate::volume::{Lighting, March, march};
+use crate::volume::{Lighting, March, half_lost, is_whole, march};
 use kernels::layout::{
     CHANNELS_ALL, FilmPixel, MATERIAL_DIFFUSE, MATERIAL_GLASS, MOST_CROSSINGS, NONE,
     SAMPLE_FRESNEL, TRANSPARENT_GLASS, WaveParams,
@@ -36,8 +36,15 @@ struct Path<R> {
     media: Media,
     /// What volumes on its way have sent to the pixel.
     emitted: V3<R>,
-    /// Of the volumes on the way from the camera.
-    coverage: R,
+    /// Optical depth of the volumes on its way so far, which is no part of the throughput.
+    depth: R,
+}
+
+impl<R: Real> Path<R> {
+    /// What of a light comes through the volumes on the path.
+    fn through_volumes(&self, has_volumes: bool, light: V3<R>) -> V3<R> {
+        if has_volumes { light.times((-self.depth).exp_negative()) } else { light }
+    }
 }
 
 /// One pixel while its rays are followed.
@@ -66,7 +73,7 @@ impl<R: Real> PixelTrace<'_, R> {
             crossings: 0,
             media: Media::of(&self.plan.camera_media),
             emitted: V3::splat(R::of(0.0)),
-            coverage: R::of(0.0),
+            depth: R::of(0.0),
         };
         let mut rays = vec![(ray, path)];
         let mut discs = discs;
@@ -87,6 +94,12 @@ impl<R: Real> PixelTrace<'_, R> {
             }
             self.account(&ray, hit.as_ref(), iterations, from_camera);
             if self.ends_at_first {
+                let end = hit.as_ref().map_or(R::of(NO_HIT), |(hit, _)| hit.t);
+                let wants = self.plan.wants_along();
+                let march = wants.then(|| self.march(&ray, end, &path.media, self.lighting()));
+                if let Some(march) = march.flatten() {
+                    self.film.along = self.along(&ray, end, &path.media, &march).to_f32();
+                }
                 return;
             }
             self.interact(&ray, hit, path, from_camera, &mut rays);
@@ -138,10 +151,22 @@ impl<R: Real> PixelTrace<'_, R> {
             _ => from_camera,
         };
         let zero = V3::splat(R::of(0.0));
-        let background = if left_out { zero } else { path.throughput * self.background(direction) };
+        let background = if left_out {
+            zero
+        } else {
+            let seen = path.throughput * self.background(direction);
+            path.through_volumes(self.has_volumes(), seen)
+        };
         self.write(path.channels, path.emitted + background);
-        let through = if refracted { path.throughput } else { zero };
-        let alpha = (V3::splat(R::of(1.0)) - through).to_f32();
+        let one = V3::splat(R::of(1.0));
+        let alpha = match (refracted, self.has_volumes()) {
+            (false, _) => one,
+            (true, false) => one - path.throughput,
+            (true, true) => {
+                (one - path.throughput) + path.throughput.times(path.depth.absorptance())
+            }
+        }
+        .to_f32();
         for (channel, value) in alpha.into_iter().enumerate() {
             if path.channels >> channel & 1 != 0 {
                 self.film.alpha[channel] = value;
@@ -160,9 +185,12 @@ impl<R: Real> PixelTrace<'_, R> {
     ) {
         let end = hit.as_ref().map_or(R::of(NO_HIT), |(hit, _)| hit.t);
         if let Some(march) = self.march(ray, end, &path.media, self.lighting()) {
-            path.emitted = path.emitted + path.throughput * march.color;
-            path.throughput = path.throughput.times(march.transmittance);
-            path.coverage = R::of(1.0) - march.transmittance;
+            let through = path.throughput.times((-path.depth).exp_negative());
+            path.emitted = path.emitted + through * march.color;
+            path.depth = path.depth + march.depth;
+            if from_camera {
+                self.film.along = self.along(ray, end, &path.media, &march).to_f32();
+            }
         }
         let objects = &self.plan.objects;
         if !path.media.is_empty() {
@@ -173,13 +201,14 @@ impl<R: Real> PixelTrace<'_, R> {
         let Some((hit, object)) = hit else {
             self.write_background(&path, ray.direction, from_camera);
             if from_camera {
-                self.film.color[3] = path.coverage.to_f32();
+                self.film.color[3] = path.depth.absorptance().to_f32();
             }
             return;
         };
         if objects[object as usize].material == MATERIAL_DIFFUSE {
             let radiance = self.shade(&hit, object, ray.hit_slot, &path.media);
-            self.write(path.channels, path.emitted + path.throughput * radiance);
+            let seen = path.through_volumes(self.has_volumes(), path.throughput * radiance);
+            self.write(path.channels, path.emitted + seen);
         } else {
             self.scatter(ray, &hit, object, &path, rays);
         }
@@ -195,6 +224,20 @@ impl<R: Real> PixelTrace<'_, R> {
     ) -> Option<March<R>> {
         let volumes = &self.plan.volumes;
         volumes.any_marched().then(|| march(ray, end, media, volumes, &self.plan.objects, lighting))
+    }
+
+    fn has_volumes(&self) -> bool {
+        !self.plan.volumes.infos.is_empty()
+    }
+
+    /// What channels of volumes show of a camera ray.
+    fn along(&self, ray: &Ray<R>, end: R, media: &Media, march: &March<R>) -> R {
+        let volumes = &self.plan.volumes;
+        if !self.plan.wants_volume_depth() || volumes.infos.iter().any(is_whole) {
+            return march.along;
+        }
+        let t = half_lost(ray, end, media, volumes, march.depth);
+        t.map_or(R::of(-1.0), |t| t * ray.direction.dot(V3::of_f32(self.params.forward)))
     }
 
     fn lighting(&self) -> Option<Lighting<'_, R>> {
@@ -220,7 +263,7 @@ impl<R: Real> PixelTrace<'_, R> {
             self.account(&ray, None, 0, false);
             if ray.hit_slot == NONE && !blocks(&ray, ray.hit_t, &self.plan.volumes) {
                 let arriving = match self.march(&ray, ray.hit_t, media, None) {
-                    Some(march) => arriving.times(march.transmittance),
+                    Some(march) => arriving.times((-march.depth).exp_negative()),
                     None => arriving,
                 };
                 irradiance = irradiance + arriving;
@@ -300,7 +343,7 @@ impl<R: Real> PixelTrace<'_, R> {
                 crossings: path.crossings + u32::from(passes),
                 media: if reflects { path.media.clone() } else { path.media.through(object, way) },
                 emitted: path.emitted,
-                coverage: path.coverage,
+                depth: path.depth,
             };
             rays.push((Ray::new(hit.position, direction, self.levels, ray.hit_slot), next));
         }

@@ -25,7 +25,7 @@ use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder};
 use kernels::layout::{
     FilmPixel, Hit, NONE, ObjectInfo, Path, Polynomial, SCENE_BLENDS, SCENE_LEVELS, SCENE_SKIPS,
-    WAVE_SHARES_PATH, WaveParams,
+    VolumeStop, WAVE_FROM_CAMERA, WAVE_SHARES_PATH, WaveParams,
 };
 use plan::{CENTER, MAX_DISC_PAIRS, Picture, Plan, Rays, Window, camera_wave};
 use points::Watch;
@@ -34,6 +34,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Of 16 bytes.
+const TEXELS_A_STOP: usize = size_of::<VolumeStop>() / 16;
 const TEXELS_A_POLYNOMIAL: u64 = (size_of::<Polynomial>() / 16) as u64;
 /// Of a path, the longest of a wave's records.
 const TEXELS_A_RAY: u64 = (size_of::<Path>() / 16) as u64;
@@ -44,7 +45,7 @@ const EMPTY_PIXEL: FilmPixel = FilmPixel {
     normal_object: [0.0; 4],
     counts: [0; 4],
     alpha: [0.0; 3],
-    pad: 0,
+    along: 0.0,
 };
 
 /// What a frame cost.
@@ -375,11 +376,17 @@ impl Renderer {
             traced = if traced == Traced::Scattered { traced } else { Traced::Camera };
             self.settle_hits(plan, params.ray_count, traced, stats, watch)?;
             self.isosurfaces(plan, params.ray_count, false, stats, watch)?;
+            if !ends_at_first || plan.wants_along() {
+                let from_camera = params.flags & WAVE_FROM_CAMERA != 0;
+                let is_center = sample == CENTER || !plan.takes_centers();
+                let depths = from_camera && is_center && plan.wants_volume_depth();
+                let axis = depths.then_some(params.forward);
+                self.march(plan, params.ray_count, (false, axis), stats, watch)?;
+            }
             if ends_at_first {
                 self.classify(plan, &params, stats)?;
                 break;
             }
-            self.march(plan, params.ray_count, false, stats, watch)?;
             let classes = self.classify(plan, &params, stats)?;
             self.go_on(plan, &mut params, classes, stats, watch)?;
             traced = Traced::Scattered;
@@ -449,6 +456,7 @@ impl Renderer {
             texels: &self.texels,
             hits: &self.hits,
             film: &self.film,
+            marches: self.volumes.as_ref().map(|volumes| &volumes.marches),
             wave: &self.wave,
         };
         record_no_marks(&mut self.recorder, &self.wave, plan, params);
@@ -488,7 +496,7 @@ impl Renderer {
             self.shadows.passed();
             self.trace_to_the_end(plan, [params.ray_count; 2], Traced::Shadows, stats, watch)?;
             self.isosurfaces(plan, params.ray_count, true, stats, watch)?;
-            self.march(plan, params.ray_count, true, stats, watch)?;
+            self.march(plan, params.ray_count, (true, None), stats, watch)?;
         }
         let io = ShadeIo {
             shadows: &self.shadows.current,
@@ -558,7 +566,8 @@ fn longest_list(plan: &Plan, rays: u32, cell_bytes: u64) -> u64 {
     let records = plan.cloud.points.len() as u64 * TEXELS_A_POLYNOMIAL;
     let lists = (cell_bytes / 8).max(u64::from(MAX_DISC_PAIRS));
     let volumes = &plan.volumes;
-    let of_volumes = [volumes.points.len(), volumes.cells.len(), 2 * volumes.stops.len()];
+    let of_volumes =
+        [volumes.points.len(), volumes.cells.len(), TEXELS_A_STOP * volumes.stops.len()];
     let of_volumes = of_volumes.into_iter().max().unwrap_or(0) as u64;
     records.max(lists).max(of_volumes).max(u64::from(rays) * TEXELS_A_RAY)
 }

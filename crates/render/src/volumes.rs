@@ -13,6 +13,8 @@ pub(crate) struct VolumeBuffers {
     pub inverse_lengths: Buffer,
     pub stops: Buffer,
     pub marches: Buffer,
+    /// What steps of each ray end with in each volume.
+    pub ends: Buffer,
     /// Beside the marches, where volumes are lit.
     pub march_lights: Buffer,
     /// What of each light's reaches each point, where volumes are lit.
@@ -36,6 +38,7 @@ impl VolumeBuffers {
         };
         let rays = u64::from(rays);
         let (lit, points) = (volumes.any_lit(), volumes.points.len() as u64);
+        let count = volumes.infos.len() as u64;
         Ok(Some(Self {
             infos: Buffer::from_slice(device, "volumes", &volumes.infos)?,
             cells: Buffer::from_slice(device, "volume cells", &volumes.cells)?,
@@ -47,6 +50,7 @@ impl VolumeBuffers {
             )?,
             stops: Buffer::from_slice(device, "transfer functions", &volumes.stops)?,
             marches: of("marches", true, rays, size_of::<March>())?,
+            ends: of("ends of steps", true, rays * count, if lit { 16 } else { 4 })?,
             march_lights: of("light of marches", lit, rays, size_of::<MarchLight>())?,
             visible: of("visible lights", lit, points, 4 * VOLUME_LIGHTS as usize)?,
             searches: of("searches", volumes.any_isosurface(), rays, size_of::<IsoSearch>())?,

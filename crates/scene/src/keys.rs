@@ -6,7 +6,8 @@
 use crate::read::Reader;
 use crate::whole::{
     background_is_one, box_has_an_inside, camera_has_a_view, direction_has_a_length,
-    material_has_one_color, stops_ascend, surface_has_no_key_in_vain, volume_says_it_once,
+    material_has_one_color, stop_shows_something, stops_ascend, surface_has_no_key_in_vain,
+    volume_says_it_once,
 };
 
 /// A key's name and what is wrong with its value.
@@ -811,12 +812,14 @@ pub(crate) static VOLUME: Table = Table {
         key("step", AUTO_LENGTH, Value("\"auto\""), "Distance of the samples along a ray."),
         key(
             "mode",
-            Kind::Choice(&["emission", "maximum", "average", "isosurface"]),
+            Kind::Choice(&["emission", "maximum", "average", "integral", "isosurface"]),
             Value("\"emission\""),
             "What a ray shows: emission and extinction along its way; the greatest scalar on it, as a layer \
-             of one `radius`; the mean scalar, all along the way; or the surface where the scalar is `iso`, \
-             with the object's material, lit like any other. `maximum` and `average` need the scene's only \
-             volume.",
+             of one `radius`; the mean scalar, all along the way; the integral of the scalar over the length \
+             of the way (the column density, where the scalar is a density), once; or the surface where the \
+             scalar is `iso`, with the object's material, lit like any other. `maximum`, `average` and \
+             `integral` need the scene's only volume, and are the channel `value` of an EXR \
+             (`--channels value`).",
         ),
         key(
             "iso",
@@ -857,15 +860,24 @@ pub(crate) static VOLUME: Table = Table {
         ),
         key(
             "value_range",
-            Kind::Range(numbers(-LARGE, LARGE, "in the attribute's unit")),
-            Words("the attribute's own range", "[0.0, 1.0]"),
-            "With `color_map`: scalars at its two ends; what lies beyond has their colours.",
+            Kind::Either(&[
+                Kind::Choice(&["auto"]),
+                Kind::Range(numbers(-LARGE, LARGE, "in the attribute's unit")),
+            ]),
+            Words("\"auto\"; required where the mode is integral", "[0.0, 1.0]"),
+            "With `color_map`: scalars at its two ends; what lies beyond has their colours. `auto` is the \
+             attribute's own range; with mode `integral`, whose values are the attribute's times a length, from \
+             0 to the greatest scalar times the diagonal of the box around the volume, which no ray exceeds.",
         ),
         key(
             "extinction",
             Kind::Either(&[Kind::Number(EXTINCTION), Kind::Pair(EXTINCTION)]),
-            Words("none; required beside `color_map`", "[0.0, 5.0]"),
-            "With `color_map`: σ everywhere, or at the two ends of `value_range` and linear between.",
+            Words(
+                "none; required beside `color_map`, but with mode `integral`, which is then opaque",
+                "[0.0, 5.0]",
+            ),
+            "With `color_map`: σ everywhere, or at the two ends of `value_range` and linear between. With mode \
+             `integral` it is the optical depth of a pixel with that value.",
         ),
     ],
 };
@@ -889,8 +901,9 @@ pub(crate) static TRANSFER_FILE: Table = Table {
 pub(crate) static TRANSFER: Table = Table {
     header: "[[objects.volume.transfer]]",
     doc: "The stops of the transfer function, ascending in value; or the path of a TOML file that has them as \
-          its `transfer`, relative to the scene file's folder.",
-    whole: None,
+          its `transfer`, relative to the scene file's folder. A stop has a colour and an extinction, an emission, or \
+          all three; what lies between two stops is linear.",
+    whole: Some(stop_shows_something),
     keys: &[
         key(
             "value",
@@ -898,8 +911,26 @@ pub(crate) static TRANSFER: Table = Table {
             Required("0.0"),
             "The scalar at this stop.",
         ),
-        key("color", RADIANCE, Required("[0.0, 0.0, 1.0]"), "Emitted colour."),
-        key("extinction", Kind::Number(EXTINCTION), Required("0.0"), "σ in α = 1 − exp(−σ·step)."),
+        key(
+            "color",
+            RADIANCE,
+            Words("black; required where there is no `emission`", "[0.0, 0.0, 1.0]"),
+            "Colour of what the extinction stops: a way with the coverage α = 1 − exp(−σℓ) sends α times \
+             this.",
+        ),
+        key(
+            "extinction",
+            Kind::Number(EXTINCTION),
+            Words("0; required where there is no `emission`", "0.0"),
+            "σ in α = 1 − exp(−σℓ); larger values are denser.",
+        ),
+        key(
+            "emission",
+            Kind::Vector(numbers(0.0, LARGE, "per scene unit, linear RGB")),
+            Value("[0.0, 0.0, 0.0]"),
+            "Radiance per length, beside what colour and extinction send, and whatever light reaches the \
+             volume: without extinction it adds to what is beyond and covers nothing.",
+        ),
     ],
 };
 

@@ -414,6 +414,9 @@ impl PointFilter {
     }
 }
 
+/// An optical depth through which nothing is seen.
+const OPAQUE: f64 = 1e3;
+
 impl Volume {
     fn read(table: &Reader<'_>) -> Self {
         let length = |name: &str| to_number(&table.value(name));
@@ -447,16 +450,21 @@ impl Volume {
             mode: match table.text("mode").as_str() {
                 "maximum" => VolumeMode::Maximum,
                 "average" => VolumeMode::Average,
+                "integral" => VolumeMode::Integral,
                 "isosurface" => VolumeMode::Isosurface(table.number("iso")),
                 _ => VolumeMode::Emission,
             },
             transfer: match table.written("color_map") {
                 Some(_) => Some(Transfer::Map {
                     color_map: ColorMap::read(&table.text("color_map")),
-                    range: table.written_range("value_range"),
-                    // None is asked for, and none is needed, by an isosurface.
+                    range: match table.written("value_range").map(|node| &node.value) {
+                        Some(Value::Text(_)) | None => None,
+                        Some(_) => table.written_range("value_range"),
+                    },
+                    // None is asked for, and none is needed, by an isosurface; an integral is opaque.
                     extinction: match table.written("extinction") {
                         Some(_) => table.pair("extinction"),
+                        None if table.text("mode") == "integral" => [OPAQUE; 2],
                         None => [0.0; 2],
                     },
                 }),
@@ -476,8 +484,9 @@ impl Stop {
     fn read(table: &Reader<'_>) -> Self {
         Self {
             value: table.number("value"),
-            color: table.vector("color"),
-            extinction: table.number("extinction"),
+            color: table.written("color").map_or([0.0; 3], |_| table.vector("color")),
+            extinction: table.written("extinction").map_or(0.0, |_| table.number("extinction")),
+            emission: table.vector("emission"),
         }
     }
 }

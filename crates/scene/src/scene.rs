@@ -320,6 +320,8 @@ pub enum VolumeMode {
     Maximum,
     /// The mean scalar, all along its way.
     Average,
+    /// The integral of the scalar along its way.
+    Integral,
     /// The first place where the scalar is this.
     Isosurface(f64),
 }
@@ -333,9 +335,10 @@ pub enum Transfer {
     Map {
         /// Which.
         color_map: ColorMap,
-        /// Scalars at its ends, the second greater; the attribute's own where `None`.
+        /// Scalars at its ends, the second greater; the attribute's own where `None`, and of an integral, up to a bound
+        /// from the data.
         range: Option<[f64; 2]>,
-        /// σ at its ends, per scene unit.
+        /// σ at its ends, per scene unit; of an integral, the optical depth of a pixel.
         extinction: [f64; 2],
     },
 }
@@ -389,6 +392,8 @@ pub struct Stop {
     pub color: [f64; 3],
     /// σ, per scene unit.
     pub extinction: f64,
+    /// Radiance per scene unit, linear RGB, beside what `color` and `extinction` send.
+    pub emission: [f64; 3],
 }
 
 /// How the surface is fitted (docs/method.md, section 1).

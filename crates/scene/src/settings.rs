@@ -207,6 +207,7 @@ fn write_volume(out: &mut String, volume: &Volume) -> fmt::Result {
         VolumeMode::Emission => writeln!(out, "mode = \"emission\"")?,
         VolumeMode::Maximum => writeln!(out, "mode = \"maximum\"")?,
         VolumeMode::Average => writeln!(out, "mode = \"average\"")?,
+        VolumeMode::Integral => writeln!(out, "mode = \"integral\"")?,
         VolumeMode::Isosurface(iso) => {
             writeln!(out, "mode = \"isosurface\"")?;
             writeln!(out, "iso = {iso:?}")?;
@@ -228,6 +229,8 @@ fn write_volume(out: &mut String, volume: &Volume) -> fmt::Result {
             writeln!(out, "color_map = \"{}\"", color_map.name())?;
             if let Some(range) = range {
                 writeln!(out, "value_range = {range:?}")?;
+            } else if volume.mode == VolumeMode::Integral {
+                writeln!(out, "value_range = \"auto\"")?;
             }
             return writeln!(out, "extinction = {extinction:?}");
         }
@@ -237,6 +240,7 @@ fn write_volume(out: &mut String, volume: &Volume) -> fmt::Result {
         writeln!(out, "value = {:?}", stop.value)?;
         writeln!(out, "color = {:?}", stop.color)?;
         writeln!(out, "extinction = {:?}", stop.extinction)?;
+        writeln!(out, "emission = {:?}", stop.emission)?;
     }
     Ok(())
 }

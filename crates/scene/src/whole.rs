@@ -132,7 +132,7 @@ pub(crate) fn volume_says_it_once(volume: &Reader<'_>) -> Result<(), Fault> {
                            \"viridis\" and extinction = [0.0, 5.0]";
             return Err(("transfer", message.into()));
         }
-        (false, true) if !surface && !has("extinction") => {
+        (false, true) if !surface && volume.text("mode") != "integral" && !has("extinction") => {
             let message = "missing, expected the extinction of what color_map shows; add e.g. extinction = \
                            [0.0, 5.0]";
             return Err(("extinction", message.into()));
@@ -163,6 +163,12 @@ pub(crate) fn volume_says_it_once(volume: &Reader<'_>) -> Result<(), Fault> {
     let required = [
         ("smoothing_length", volume.text("kernel") == "sph", "kernel \"sph\"", "\"h\""),
         ("iso", surface, "mode \"isosurface\"", "0.5"),
+        (
+            "value_range",
+            volume.text("mode") == "integral" && has("color_map"),
+            "the colours of mode \"integral\"",
+            "\"auto\"",
+        ),
     ];
     for (name, needed, owner, example) in required {
         if needed && !has(name) {
@@ -222,6 +228,23 @@ pub(crate) fn surface_has_no_key_in_vain(surface: &Reader<'_>) -> Result<(), Fau
             "belongs to neighbors \"auto\", but {key} {found}, by which points are taken as they are; remove one"
         );
         return Err(("accuracy", message));
+    }
+    Ok(())
+}
+
+/// A stop without an emission has a colour and an extinction.
+pub(crate) fn stop_shows_something(stop: &Reader<'_>) -> Result<(), Fault> {
+    let has = |name: &str| stop.written(name).is_some();
+    for (name, what, example) in [
+        ("color", "three numbers from 0 to 1e15", "[0.0, 0.0, 1.0]"),
+        ("extinction", "a number from 0 to 1e15", "0.0"),
+    ] {
+        if !has("emission") && !has(name) {
+            let message = format!(
+                "missing, expected {what}, or an emission without it; add e.g. {name} = {example}"
+            );
+            return Err((name, message));
+        }
     }
     Ok(())
 }

@@ -9,12 +9,13 @@ use plan::Plan;
 use points::Watch;
 
 impl Renderer {
-    /// The way of a wave's rays, or of its shadow rays, through the volumes of the scene, if it has any.
+    /// The way of a wave's rays, or of its shadow rays, through the volumes of the scene, if it has any. `depths` is the
+    /// viewing axis, where it is asked for how far along it light is lost.
     pub(super) fn march(
         &mut self,
         plan: &Plan,
         ray_count: u32,
-        shadows: bool,
+        (shadows, depths): (bool, Option<[f32; 3]>),
         stats: &mut FrameStats,
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
@@ -47,7 +48,11 @@ impl Renderer {
                 return Err(RenderError::Interrupted);
             }
             self.recorder.fill(&self.live, 0, 4, 0);
-            let params = march_params(plan, ray_count, self.budget);
+            let params = MarchParams {
+                forward: depths.unwrap_or_default(),
+                wants_depth: u32::from(depths.is_some()),
+                ..march_params(plan, ray_count, self.budget)
+            };
             self.passes.march.record(&mut self.recorder, io, &params);
             let passes = self.recorder.submit()?.passes;
             stats.add_kernels(&passes);
@@ -132,7 +137,7 @@ impl Renderer {
         let traced = Traced::PastObject(plan.volumes.infos[params.volume as usize].object);
         self.trace_to_the_end(plan, [params.count; 2], traced, stats, watch)?;
         self.isosurfaces(plan, params.count, true, stats, watch)?;
-        self.march(plan, params.count, true, stats, watch)?;
+        self.march(plan, params.count, (true, None), stats, watch)?;
         self.record_point_light(params, false);
         stats.add_kernels(&self.recorder.submit()?.passes);
         Ok(())
@@ -165,5 +170,8 @@ fn march_params(plan: &Plan, ray_count: u32, budget: Budget) -> MarchParams {
         step: plan.volumes.step,
         work: budget.work() / 2, // two loops a sample
         light_count: plan.lights.len() as u32,
+        forward: [0.0; 3],
+        wants_depth: 0,
+        pad: [0; 3],
     }
 }

@@ -5,8 +5,9 @@ use crate::state::{RayLoop, StoredRays, Touch};
 use crate::wave::WaveBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
-    SHADE_FILM, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, TRACE_HITS, TRACE_POLYNOMIALS, WAVE_LIT,
-    WAVE_LIT_HITS, WAVE_NEXT_MARKS, WAVE_NEXT_PATHS, WAVE_PATHS, WAVE_SCATTERING, WaveParams,
+    MARCH_STATE, SHADE_FILM, SHADE_IMAGES, SHADE_OBJECTS, SHADE_TEXELS, TRACE_HITS,
+    TRACE_POLYNOMIALS, WAVE_LIT, WAVE_LIT_HITS, WAVE_NEXT_MARKS, WAVE_NEXT_PATHS, WAVE_PATHS,
+    WAVE_SCATTERING, WaveParams,
 };
 use kernels::spirv;
 use std::sync::Arc;
@@ -21,6 +22,8 @@ pub(crate) struct ClassifyIo<'a> {
     pub film: &'a Buffer,
     pub images: &'a Buffer,
     pub texels: &'a Buffer,
+    /// Where there are volumes.
+    pub marches: Option<&'a Buffer>,
     /// Marks are none before.
     pub wave: &'a WaveBuffers,
 }
@@ -35,6 +38,7 @@ impl Classify {
 
     pub fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, GpuError> {
         let buffers = [
+            MARCH_STATE,
             SHADE_FILM,
             SHADE_IMAGES,
             SHADE_TEXELS,
@@ -64,6 +68,7 @@ impl Classify {
             .buffer(SHADE_FILM, io.film)
             .buffer(SHADE_IMAGES, io.images)
             .buffer(SHADE_TEXELS, io.texels)
+            .buffer(MARCH_STATE, io.marches.unwrap_or(io.hits))
             .buffer(WAVE_PATHS, io.wave.paths())
             .buffer(WAVE_NEXT_PATHS, io.wave.paths())
             .buffer(WAVE_LIT, &io.wave.lit.bits)

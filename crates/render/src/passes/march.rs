@@ -5,8 +5,8 @@ use crate::state::{RayLoop, StoredRays, Touch};
 use crate::volumes::VolumeBuffers;
 use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder, Texel};
 use kernels::layout::{
-    MARCH_CELLS, MARCH_LENGTHS, MARCH_LIGHT, MARCH_POINTS, MARCH_STATE, MARCH_STOPS, MARCH_VISIBLE,
-    MARCH_VOLUMES, MarchParams, SHADE_LIGHTS, SHADE_OBJECTS, TRACE_HITS, TRACE_LIVE,
+    MARCH_CELLS, MARCH_ENDS, MARCH_LENGTHS, MARCH_LIGHT, MARCH_POINTS, MARCH_STATE, MARCH_STOPS,
+    MARCH_VISIBLE, MARCH_VOLUMES, MarchParams, SHADE_LIGHTS, SHADE_OBJECTS, TRACE_HITS, TRACE_LIVE,
     WAVE_LIGHT_SUMS, WAVE_LIT_RAYS, WAVE_PATHS,
 };
 use kernels::spirv;
@@ -47,7 +47,7 @@ impl March {
         let kernel = |module: &[u32], more: &[u32]| {
             let mut bindings = form.bindings(Touch::Reads);
             bindings.extend(volume_lists(form));
-            let buffers = [TRACE_LIVE, WAVE_PATHS, MARCH_VOLUMES, MARCH_STATE];
+            let buffers = [TRACE_LIVE, WAVE_PATHS, MARCH_VOLUMES, MARCH_STATE, MARCH_ENDS];
             let all = buffers.iter().chain(more);
             bindings.extend(all.map(|&binding| match binding {
                 SHADE_OBJECTS | MARCH_VISIBLE => (binding, form.read(Texel::Four)),
@@ -88,7 +88,8 @@ impl March {
             .buffer(MARCH_POINTS, &io.volumes.points)
             .buffer(MARCH_LENGTHS, &io.volumes.inverse_lengths)
             .buffer(MARCH_STOPS, &io.volumes.stops)
-            .buffer(MARCH_STATE, &io.volumes.marches);
+            .buffer(MARCH_STATE, &io.volumes.marches)
+            .buffer(MARCH_ENDS, &io.volumes.ends);
         let pass = match io.marched {
             Marched::Wave { hits, objects, lights } => {
                 let pass = pass.buffer(TRACE_HITS, hits).buffer(SHADE_OBJECTS, objects);

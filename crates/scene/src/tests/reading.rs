@@ -125,7 +125,7 @@ fn every_built_key_is_read() {
     let glass =
         MaterialKind::Glass { ior: [1.4, 1.5, 1.6], priority: -3, absorption: [0.0, 0.5, 2.0] };
     assert_eq!(scene.objects[5].material.kind, glass);
-    let stop = |value, color, extinction| Stop { value, color, extinction };
+    let stop = |value, color, extinction| Stop { value, color, extinction, emission: [0.0; 3] };
     let volume = Volume {
         scalar: "density".into(),
         kernel: VolumeKernel::Sum,
