@@ -5,6 +5,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use film::{Tone, ToneCurve};
 use plan::{Diagnostic, Extra};
+use scene::ViewFrom;
 use std::path::PathBuf;
 
 /// The whole command line.
@@ -66,10 +67,8 @@ pub struct RenderArgs {
     /// Write R, G, B, A and N of EXR files in 16 bits instead of 32; all other channels stay
     #[arg(long)]
     pub half: bool,
-    /// Which axis of a point file points upwards [default: z of LAS, LAZ and E57 files, -y of organised PCD
-    /// files, which depth cameras write, else y]
-    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
-    pub up: Option<UpAxis>,
+    #[command(flatten)]
+    pub view: ViewArgs,
     /// What the columns of a point file are, from the first on, with commas between: x,y,z,_,red,green,blue;
     /// _ passes a column over
     #[arg(long, value_name = "LIST", value_parser = points::Columns::in_order)]
@@ -212,7 +211,28 @@ pub struct CheckArgs {
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub set: Vec<String>,
     #[command(flatten)]
+    pub view: ViewArgs,
+    #[command(flatten)]
     pub progress: ProgressArgs,
+}
+
+/// How a scene or a point file is looked at.
+#[derive(Debug, Default, Args)]
+pub struct ViewArgs {
+    /// Which axis of a point file points upwards [default: z of LAS, LAZ and E57 files, -y of organised PCD
+    /// files, which depth cameras write, else y]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
+    pub up: Option<UpAxis>,
+    /// Look from this side, with everything in the picture: front, back, left, right, top, bottom or iso, the
+    /// corner between front, right and top
+    #[arg(long, value_name = "SIDE", value_parser = view_parser())]
+    pub view: Option<ViewFrom>,
+    /// Show parallel lines as such, with everything in the picture
+    #[arg(long)]
+    pub ortho: bool,
+    /// Take the camera from the header of another picture, of this program or any other
+    #[arg(long, value_name = "FILE.exr", conflicts_with_all = ["up", "view", "ortho"])]
+    pub camera_from: Option<PathBuf>,
 }
 
 /// Options that stand for values of the scene.
@@ -333,6 +353,11 @@ fn channels_parser() -> impl TypedValueParser<Value = Channels> {
         let diagnostic = Diagnostic::named(&name).map(Channels::Diagnostic);
         diagnostic.or_else(|| Extra::named(&name).map(Channels::Extra)).ok_or("no channel")
     })
+}
+
+fn view_parser() -> impl TypedValueParser<Value = ViewFrom> {
+    PossibleValuesParser::new(ViewFrom::NAMES)
+        .try_map(|name| ViewFrom::named(&name).ok_or("no side"))
 }
 
 fn parse_size(text: &str) -> Result<Size, String> {

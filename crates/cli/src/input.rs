@@ -1,6 +1,7 @@
 //! From a path on the command line to a checked scene and its points.
 
-use crate::args::{Overrides, UpAxis};
+use crate::args::{Overrides, ViewArgs};
+use crate::camera::CameraOptions;
 use crate::errors::Failure;
 use crate::memory;
 use crate::point_file::{ColorBy, PointFile};
@@ -23,8 +24,10 @@ pub struct Input {
     pub path: PathBuf,
     /// What to render.
     pub scene: Scene,
-    /// What turns the view where the scene has no camera.
+    /// What turns the view where the scene's camera does not say what is up.
     up: Up,
+    /// What else is said of the camera.
+    options: CameraOptions,
     /// Of a point file without a scene.
     point_file: Option<PointFile>,
 }
@@ -122,27 +125,22 @@ pub fn is_scene_file(path: &Path) -> bool {
 
 impl Input {
     /// Loads and checks a scene file, or makes the scene that a point file means. Reads no points.
-    pub fn load(path: &Path, values: &SceneValues, up: Option<UpAxis>) -> Result<Self, Failure> {
+    pub fn load(path: &Path, values: &SceneValues, view: &ViewArgs) -> Result<Self, Failure> {
         let set = values.as_set();
-        let turned = up.map_or(Up::Y, Up::from);
+        let options = CameraOptions::new(view, &set)?;
+        let turned = options.up.map_or(Up::Y, Up::from);
         let loaded = if is_scene_file(path) {
             Scene::load(path, &set)
         } else {
             Scene::for_point_file(path, turned, &set)
         };
         let mut scene = loaded.map_err(|error| values.name_options(error.into()))?;
-        if let (true, Some(_), Some(_)) = (is_scene_file(path), up, scene.camera) {
-            return Err(Failure::usage(format!(
-                "{}: --up is for point files and for scenes without a camera, but this one has \
-                 [camera]; set camera.up there, or leave --up out",
-                path.display()
-            )));
-        }
+        options.apply(&mut scene, path, is_scene_file(path))?;
         let point_file = (!is_scene_file(path)).then(|| {
             leave_out_folder(&mut scene, path);
-            PointFile { values: set, up_is_open: up.is_none(), color: None }
+            PointFile { values: set, up_is_open: options.up.is_none(), color: None }
         });
-        Ok(Self { path: path.into(), scene, up: turned, point_file })
+        Ok(Self { path: path.into(), scene, up: turned, options, point_file })
     }
 
     /// With `--color`, which is for point files.
@@ -165,7 +163,8 @@ impl Input {
         let in_degrees = (self.scene.objects.iter().zip(sets)).any(|(object, set)| {
             object.units == Units::Degrees || matches!(set.units, points::Units::Degrees(_))
         });
-        let is_open = self.point_file.as_ref().is_some_and(|file| file.up_is_open);
+        let is_open = self.point_file.as_ref().is_some_and(|file| file.up_is_open)
+            && self.scene.camera.up.is_none();
         match in_degrees {
             _ if !is_open => None,
             true => Some((Upwards::Z, "as on maps")),
@@ -179,7 +178,11 @@ impl Input {
             Some((Upwards::Y, _)) => Up::Y,
             Some((Upwards::Z, _)) => Up::Z,
             Some((Upwards::MinusY, _)) => Up::MinusY,
-            None => self.up,
+            None => match self.scene.camera.up {
+                Some([x, y, z]) if z > x.abs().max(y.abs()) => Up::Z,
+                Some([x, y, z]) if -y > x.abs().max(z.abs()) => Up::MinusY,
+                _ => self.up,
+            },
         }
     }
 
@@ -194,14 +197,15 @@ impl Input {
             self.note_sensor(&view, progress);
             let values = &point_file.values;
             let lights = Scene::for_sensor(&self.path, view.axes, values)?.lights;
-            let camera = Some(view.camera);
-            return Ok((Cow::Owned(Scene { lights, camera, ..self.scene.clone() }), self.up));
+            let camera = view.camera.into();
+            let scene = Scene { lights, key_light: None, camera, ..self.scene.clone() };
+            return Ok((Cow::Owned(scene), self.up));
         }
         let (Some(point_file), Some((up, why))) = (&self.point_file, self.found_up(sets)) else {
             return Ok((Cow::Borrowed(&self.scene), self.up));
         };
         let turned = self.up_of(sets);
-        if self.scene.camera.is_none() {
+        if self.scene.camera.whole().is_none() {
             let file = self.path.display();
             let others: Vec<String> = ([Upwards::Y, Upwards::Z, Upwards::MinusY].iter())
                 .filter(|other| **other != up)
@@ -298,6 +302,7 @@ impl Input {
         if !values.is_empty() {
             values.extend(point_file.values.iter().cloned());
             self.scene = Scene::for_point_file(&self.path, self.up, &values)?;
+            self.options.apply(&mut self.scene, &self.path, false)?;
             leave_out_folder(&mut self.scene, &self.path);
         }
         Ok(sets)
@@ -360,6 +365,8 @@ impl Input {
         if let Some(projection) = &plan.projection {
             note_projection(projection, progress);
         }
+        let metres = plan.projection.map(|projection| projection.to_string());
+        self.options.note(plan.image_size, metres.as_deref(), progress);
         for warning in plan.coarse.iter().chain(&plan.long_steps) {
             progress.warn(&format!("{warning}"));
         }

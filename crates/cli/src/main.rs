@@ -8,6 +8,7 @@
 mod ahead;
 mod args;
 mod bench;
+mod camera;
 mod commands;
 mod console;
 mod engine;

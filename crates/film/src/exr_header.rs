@@ -58,14 +58,16 @@ impl ExrHeader {
 
     /// Left, top, right and bottom of the window of this name, the last two inside of it. Wide
     /// enough that their differences do not overflow.
-    pub(crate) fn window(&self, name: &str) -> Option<[i64; 4]> {
+    #[must_use]
+    pub fn window(&self, name: &str) -> Option<[i64; 4]> {
         let (words, _) = self.get(name)?.bytes.as_chunks::<4>();
         let numbers: Vec<i64> = words.iter().map(|&word| i32::from_le_bytes(word).into()).collect();
         numbers.try_into().ok()
     }
 
     /// The 4 x 4 matrix of this name, row by row.
-    pub(crate) fn matrix(&self, name: &str) -> Option<[[f32; 4]; 4]> {
+    #[must_use]
+    pub fn matrix(&self, name: &str) -> Option<[[f32; 4]; 4]> {
         let (words, _) = self.get(name)?.bytes.as_chunks::<4>();
         let numbers: Vec<f32> = words.iter().map(|&word| f32::from_le_bytes(word)).collect();
         let (rows, _) = numbers.as_chunks::<4>();
@@ -99,7 +101,7 @@ pub(crate) struct ExrChannel {
 /// # Errors
 /// [`FilmError::Read`] if the file cannot be opened, [`FilmError::NotExr`] if it is no EXR or ends
 /// within its headers.
-pub(crate) fn read_exr_headers(path: &Path) -> Result<Vec<ExrHeader>, FilmError> {
+pub fn read_exr_headers(path: &Path) -> Result<Vec<ExrHeader>, FilmError> {
     let read_error = |source| FilmError::Read { path: path.into(), source };
     let mut file = File::open(path).map_err(read_error)?.take(LONGEST);
     let mut bytes = Vec::new();

@@ -20,7 +20,7 @@ mod store;
 mod tone;
 
 pub use error::FilmError;
-pub use exr_header::{ExrAttribute, ExrHeader};
+pub use exr_header::{ExrAttribute, ExrHeader, read_exr_headers};
 pub use exr_read::{
     ExrFile, ExrPart, ExrPicture, Samples, exr_pixel_bytes, read_exr, read_exr_file,
 };

@@ -12,6 +12,9 @@ pub enum PlanError {
     /// The watcher asked for an end.
     #[error("interrupted")]
     Interrupted,
+    /// A camera whose keys do not go with the points.
+    #[error("{0}")]
+    Camera(String),
     /// A material asks for colours that the file lacks.
     #[error(
         "object '{name}': material.albedo is \"points\" but {file} has no colours; give a colour \

@@ -3,7 +3,7 @@
 use crate::degrees::in_degrees;
 use glam::DVec3;
 use points::{PointSet, Sensor};
-use scene::{Camera, Object, Projection, Scene};
+use scene::{Camera, CameraKeys, Object, Projection, Scene};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -31,22 +31,45 @@ pub struct SensorView {
 }
 
 /// The view of the sensor that took the points of a scene; `None` where the points are not one image with columns and rows, of less
-/// than 150 degrees, or the scene has a camera.
+/// than 150 degrees, or the scene's camera has an eye or a view of its own, or parallel rays.
 ///
 /// The eye stands where the sensor stood, and up is the sensor's. Ahead is as well, unless the points lie to one side of that: then it is the
 /// middle of the angles that they take up, as for scanners, which have no ahead. The picture is just large enough for all points.
 #[must_use]
 pub fn sensor_view(scene: &Scene, sets: &[Arc<PointSet>]) -> Option<SensorView> {
-    let ([object], [set], None) = (scene.objects.as_slice(), sets, scene.camera) else {
+    let ([object], [set]) = (scene.objects.as_slice(), sets) else { return None };
+    let keys = &scene.camera;
+    if keys.eye.is_some() || keys.view.is_some() || keys.is_orthographic {
         return None;
-    };
+    }
     let [sensor] = set.sensors.as_slice() else { return None };
     let is_image = sensor.image.is_some() && !in_degrees(object, set);
     let has_all = || set.file_index.iter().all(|index| sensor.points.contains(index));
     if !is_image || !has_all() {
         return None;
     }
-    Seen::of(object, set, sensor)?.view(scene.image.size)
+    Seen::of(object, set, sensor)?.view(scene.image.size)?.with(keys)
+}
+
+impl SensorView {
+    /// The same with the keys that are given; `None` where they leave it no line of sight.
+    fn with(mut self, keys: &CameraKeys) -> Option<Self> {
+        let camera = &mut self.camera;
+        if let Some(vertical_fov) = keys.vertical_fov {
+            camera.projection = Projection::Perspective { vertical_fov };
+        }
+        (camera.aperture, camera.focus) = (keys.aperture, keys.focus);
+        if keys.target.is_none() && keys.up.is_none() {
+            return Some(self);
+        }
+        camera.target = keys.target.unwrap_or(camera.target);
+        camera.up = keys.up.unwrap_or(camera.up);
+        let [eye, target, up] = [camera.eye, camera.target, camera.up].map(DVec3::from);
+        let ahead = (target - eye).try_normalize()?;
+        let right = ahead.cross(up.normalize()).try_normalize()?;
+        self.axes = [right, right.cross(ahead), ahead].map(Into::into);
+        Some(self)
+    }
 }
 
 /// Right, up and ahead.

@@ -21,6 +21,8 @@ mod field;
 mod filter;
 mod first_view;
 mod frame;
+mod framing;
+mod header_camera;
 mod images;
 mod inside;
 mod isolated;
@@ -44,6 +46,7 @@ pub use discs::{MAX_DISC_PAIRS, screen_tiles};
 pub use error::PlanError;
 pub use extra::Extra;
 pub use first_view::{SensorView, sensor_view};
+pub use header_camera::{HeaderCamera, camera_of_matrices};
 pub use images::{Cleaned, SceneImages};
 pub use missing::{Lacking, Missing};
 pub use needs::{columns as point_columns, filter as point_filter, read_options};
@@ -267,11 +270,14 @@ impl Plan {
             }
             None => NONE,
         };
-        let camera = match scene.camera {
+        let camera = match scene.camera.whole() {
             Some(camera) => camera,
             None => {
-                let (world, bounds) = shapes::with_extents(&shapes, &cloud, &bulk.world);
-                camera::frame(&world, bounds, image_size, up)
+                let (sets, bounds) = &shapes::with_extents(&shapes, &cloud, &bulk.world);
+                framing::complete(
+                    &scene.camera,
+                    &framing::Subject { sets, bounds: *bounds, image_size, up },
+                )?
             }
         };
         if environment != NONE {
@@ -290,11 +296,13 @@ impl Plan {
         let sight = Sight::new(&camera, image_size);
         let origin = file_origin(cloud.bounds);
         let [world_to_camera, world_to_ndc] = sight.matrices(origin);
-        let lights =
-            scene.lights.iter().map(|light| local_light(light, &camera, cloud.origin)).collect();
         found.chosen.sort_by_key(|chosen| chosen.object);
         let chosen_text = chosen::attribute(&found.chosen);
-        let framed = Scene { camera: Some(camera), ..scene.clone() };
+        let scene_lights = framing::lights_for(&scene.lights, scene.key_light, &camera);
+        let lights =
+            scene_lights.iter().map(|light| local_light(light, &camera, cloud.origin)).collect();
+        let framed =
+            Scene { camera: camera.into(), lights: scene_lights, key_light: None, ..scene.clone() };
         Ok(Self {
             fits,
             shapes,

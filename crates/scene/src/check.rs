@@ -301,7 +301,10 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
                     (Kind::Choice(_) | Kind::Text(_), Value::Text(_))
                         | (Kind::Number(_), Value::Integer(_) | Value::Float(_))
                         | (Kind::Integer { .. }, Value::Integer(_))
-                        | (Kind::Vector(_) | Kind::Pair(_) | Kind::Range(_), Value::List(_))
+                        | (
+                            Kind::Vector(_) | Kind::Pair(_) | Kind::Range(_) | Kind::Direction,
+                            Value::List(_)
+                        )
                 )
             };
             let prefixed = |kind: &&Kind| match (kind, value) {

@@ -3,6 +3,7 @@
 //! The checker, the defaults of the public types, the JSON Schema and the tables of docs/scene.md
 //! all come from [`SCENE`]. What is known here but not built is listed in `not_built.rs`.
 
+use crate::camera_keys::ViewFrom;
 use crate::read::Reader;
 use crate::whole::{
     background_is_one, box_has_an_inside, camera_has_a_view, direction_has_a_length,
@@ -120,6 +121,8 @@ pub(crate) const fn numbers(min: f64, max: f64, unit: &'static str) -> Numbers {
     Numbers { min, max, unit }
 }
 
+/// The vertical angle of a camera whose eye and target are given, in degrees.
+pub(crate) const DEFAULT_FOV: f64 = 35.0;
 /// The key of `[objects.columns]` that lists columns which are passed over.
 pub(crate) const LEFT_OUT: &str = "_";
 /// Greatest number of a column.
@@ -157,7 +160,7 @@ pub(crate) static SCENE: Table = Table {
     doc: "",
     whole: None,
     keys: &[
-        key("camera", Kind::Table(&CAMERA), Words("framed on the objects", "{}"), CAMERA.doc),
+        key("camera", Kind::Table(&CAMERA), Absent::Table, CAMERA.doc),
         key("image", Kind::Table(&IMAGE), Absent::Table, IMAGE.doc),
         key("render", Kind::Table(&RENDER), Absent::Table, RENDER.doc),
         key("background", Kind::Table(&BACKGROUND), Absent::Table, BACKGROUND.doc),
@@ -178,21 +181,42 @@ pub(crate) static SCENE: Table = Table {
 
 pub(crate) static CAMERA: Table = Table {
     header: "[camera]",
-    doc: "A camera with square pixels, row 0 at the top. Left out, the view is framed on the objects.",
+    doc: "A camera with square pixels, row 0 at the top. Whatever is left out is chosen so that the objects are in the \
+          picture: see [below](#the-automatic-camera).",
     whole: Some(camera_has_a_view),
     keys: &[
-        key("eye", POSITION, Required("[0.0, 0.4, 3.0]"), "Where the camera is, in the world."),
-        key("target", POSITION, Required("[0.0, 0.0, 0.0]"), "The point in the picture's middle."),
+        key(
+            "eye",
+            POSITION,
+            Words("as far away as the objects need", "[0.0, 0.4, 3.0]"),
+            "Where the camera is, in the world.",
+        ),
+        key(
+            "target",
+            POSITION,
+            Words("in the middle of the objects", "[0.0, 0.0, 0.0]"),
+            "The point in the picture's middle.",
+        ),
+        key(
+            "view",
+            Kind::Either(&[Kind::Choice(&ViewFrom::NAMES), Kind::Direction]),
+            Words("from the front, a little from the right and from above", "\"front\""),
+            "Where the camera looks from, or the way that it looks, as three numbers; only where eye or target is left out.",
+        ),
         key(
             "up",
             Kind::Direction,
             Value("[0.0, 1.0, 0.0]"),
-            "The direction that is upwards in the picture; not parallel to the line of sight.",
+            "The direction that is upwards in the picture; not parallel to the line of sight. `--up` goes before the \
+             default.",
         ),
         key(
             "vertical_fov",
             Kind::Number(numbers(0.001, 179.0, "degrees")),
-            Value("35.0"),
+            Words(
+                "35; 40 where eye is left out; what holds the objects, at most 90, where only target is",
+                "35.0",
+            ),
             "Perspective only: angle between the lower and the upper edge of the picture.",
         ),
         key(
@@ -205,7 +229,7 @@ pub(crate) static CAMERA: Table = Table {
         key(
             "height",
             LENGTH,
-            Words("none; required where the projection is orthographic", "2.0"),
+            Words("what holds the objects", "2.0"),
             "Orthographic only: height of what the picture shows.",
         ),
         key(

@@ -6,6 +6,7 @@
 //! docs/scene.md come from it. `not_built.rs` lists what is known there but not built.
 #![forbid(unsafe_code)]
 
+mod camera_keys;
 mod check;
 mod document;
 mod error;
@@ -30,6 +31,7 @@ mod reference_page;
 #[cfg(test)]
 mod tests;
 
+pub use camera_keys::{CameraKeys, ViewFrom, camera_keys_set};
 pub use error::SceneError;
 pub use models::MODELS_VARIABLE;
 pub use scene::{

@@ -6,11 +6,11 @@ use crate::keys::{self, SCENE};
 use crate::models::{self, MODELS_VARIABLE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
-    Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
+    Albedo, Background, Boundary, CameraKeys, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
     ImageSettings, Light, Material, MaterialKind, Neighbors, Normals, Object, PerParticle,
-    PointFilter, Polynomial, Primary, Projection, RadiusOf, RayLoop, Refine, RenderSettings,
-    Scatter, Scene, SceneError, Secondary, ShapeRadius, Stop, Surface, SurfaceKind, TextureAxis,
-    Transfer, Transform, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
+    PointFilter, Polynomial, Primary, RadiusOf, RayLoop, Refine, RenderSettings, Scatter, Scene,
+    SceneError, Secondary, ShapeRadius, Stop, Surface, SurfaceKind, TextureAxis, Transfer,
+    Transform, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
 };
 use std::env;
 use std::fs::{self, File};
@@ -70,6 +70,9 @@ impl Scene {
         let mut document = point_file_document(points, key);
         let mut scene = checked(&mut document, Path::new(""), &source)?;
         models::find(&mut scene, models_folder().as_deref());
+        let key_light = document.get("lights").and_then(|list| list.items().first());
+        let direction = key_light.and_then(|light| light.get("direction"));
+        scene.key_light = direction.filter(|node| node.origin == Origin::Given).map(|_| 0);
         let written = document.get("objects").and_then(|list| list.items().first()?.get("points"));
         // The document holds text; the path itself may hold bytes that are not UTF-8.
         if let (Some(Origin::Given), [object, ..]) =
@@ -255,33 +258,16 @@ fn point_file_document(points: &Path, key: [f64; 3]) -> Node {
 
 fn scene(file: &Reader<'_>, folder: &Path) -> Scene {
     Scene {
-        camera: file
-            .written("camera")
-            .map(|node| Camera::read(&Reader::new(&keys::CAMERA, Some(node)))),
+        camera: CameraKeys::read(&file.table("camera", &keys::CAMERA)),
         inside: file.table("camera", &keys::CAMERA).written("inside").map(crate::inside::names),
         image: ImageSettings::read(&file.table("image", &keys::IMAGE)),
         render: RenderSettings::read(&file.table("render", &keys::RENDER)),
         background: Background::read(&file.table("background", &keys::BACKGROUND), folder),
         lights: file.tables("lights", &keys::LIGHTS).iter().map(Light::read).collect(),
+        key_light: None,
         objects: (file.tables("objects", &keys::OBJECTS).iter())
             .map(|object| Object::read(object, folder))
             .collect(),
-    }
-}
-
-impl Camera {
-    fn read(table: &Reader<'_>) -> Self {
-        Self {
-            eye: table.vector("eye"),
-            target: table.vector("target"),
-            up: table.vector("up"),
-            projection: match table.text("projection").as_str() {
-                "orthographic" => Projection::Orthographic { height: table.number("height") },
-                _ => Projection::Perspective { vertical_fov: table.number("vertical_fov") },
-            },
-            aperture: table.number("aperture"),
-            focus: table.written("focus").map(|_| table.number("focus")),
-        }
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Ranges stated here hold for every value that came from a file: `keys.rs` is where they are set.
 
-use crate::Transform;
+use crate::{CameraKeys, Transform};
 use std::path::PathBuf;
 
 /// What to render. Lengths are scene units, colours linear RGB with Rec. 709 primaries.
@@ -10,8 +10,8 @@ use std::path::PathBuf;
 pub struct Scene {
     /// Names of the objects of glass that the eye is inside (`camera.inside`); `None`: the renderer finds out.
     pub inside: Option<Vec<String>>,
-    /// The view; `None` means that the renderer frames the objects.
-    pub camera: Option<Camera>,
+    /// What is given of the view; the renderer frames the objects with the rest.
+    pub camera: CameraKeys,
     /// Size and sampling of the picture.
     pub image: ImageSettings,
     /// How rays are followed.
@@ -20,6 +20,9 @@ pub struct Scene {
     pub background: Background,
     /// The lights, 0 to 1024.
     pub lights: Vec<Light>,
+    /// The directional light whose direction follows the camera, by its place among the lights: the key light of a point
+    /// file rendered directly, unless its direction is given. Scene files have none.
+    pub key_light: Option<usize>,
     /// The objects, 1 to 65536; an object's place here is its index in the picture.
     pub objects: Vec<Object>,
 }

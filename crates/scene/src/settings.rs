@@ -2,9 +2,9 @@
 
 use crate::{
     Albedo, Boundary, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Neighbors,
-    Normals, Object, PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, Projection,
-    RadiusOf, Refine, RenderSettings, Scatter, Scene, Surface, SurfaceKind, TextureAxis, Transfer,
-    Units, Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
+    Normals, Object, PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, RadiusOf,
+    Refine, RenderSettings, Scatter, Scene, Surface, SurfaceKind, TextureAxis, Transfer, Units,
+    Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
 };
 use std::fmt::{self, Write};
 
@@ -20,31 +20,7 @@ impl Scene {
     }
 
     fn write_settings(&self, out: &mut String) -> fmt::Result {
-        if let Some(camera) = &self.camera {
-            writeln!(out, "[camera]")?;
-            writeln!(out, "eye = {:?}", camera.eye)?;
-            writeln!(out, "target = {:?}", camera.target)?;
-            writeln!(out, "up = {:?}", camera.up)?;
-            match camera.projection {
-                Projection::Perspective { vertical_fov } => {
-                    writeln!(out, "projection = \"perspective\"")?;
-                    writeln!(out, "vertical_fov = {vertical_fov:?}")?;
-                }
-                Projection::Orthographic { height } => {
-                    writeln!(out, "projection = \"orthographic\"")?;
-                    writeln!(out, "height = {height:?}")?;
-                }
-            }
-            writeln!(out, "aperture = {:?}", camera.aperture)?;
-            if let Some(focus) = camera.focus {
-                writeln!(out, "focus = {focus:?}")?;
-            }
-            if let Some(inside) = &self.inside {
-                let names: Vec<String> = inside.iter().map(|name| quoted(name)).collect();
-                writeln!(out, "inside = [{}]", names.join(", "))?;
-            }
-            writeln!(out)?;
-        }
+        self.camera.write(self.inside.as_deref(), out)?;
         writeln!(out, "[image]")?;
         writeln!(out, "size = {:?}", self.image.size)?;
         writeln!(out, "samples = {}", self.image.samples)?;

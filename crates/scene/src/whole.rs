@@ -3,34 +3,60 @@
 use crate::document::{Origin, Value};
 use crate::keys::{Fault, SHORT, plain};
 use crate::load::key_of_points_as_they_are;
-use crate::read::Reader;
+use crate::read::{Reader, to_vector};
 
 /// The sine of the smallest angle between `up` and the line of sight.
 const MIN_SINE: f64 = 1e-6;
 
-/// A camera looks along a line, and `up` is not along it.
+/// A camera looks along a line, and `up` is not along it: as far as both are given.
 pub(crate) fn camera_has_a_view(camera: &Reader<'_>) -> Result<(), Fault> {
-    let [eye, target, up] = ["eye", "target", "up"].map(|name| camera.vector(name));
-    let view = [target[0] - eye[0], target[1] - eye[1], target[2] - eye[2]];
-    let distance = length(view);
-    if distance < SHORT {
-        let message = format!(
-            "found {} scene units from camera.eye, expected at least {}; move it apart",
-            plain(distance),
-            plain(SHORT)
-        );
-        return Err(("target", message));
-    }
+    let given = |name: &str| camera.written(name).is_some();
+    let up = camera.vector("up");
     long_enough("up", up)?;
-    let (v, u) = (view.map(|x| x / distance), up.map(|x| x / length(up)));
-    let cross = [v[1] * u[2] - v[2] * u[1], v[2] * u[0] - v[0] * u[2], v[0] * u[1] - v[1] * u[0]];
-    if length(cross) < MIN_SINE {
-        let message = "found a direction parallel to the line of sight from camera.eye to \
-                       camera.target, expected one across it; turn it";
-        return Err(("up", message.into()));
+    let focus = match (given("eye"), given("target")) {
+        (true, true) => {
+            let [eye, target] = ["eye", "target"].map(|name| camera.vector(name));
+            let view = [target[0] - eye[0], target[1] - eye[1], target[2] - eye[2]];
+            let distance = length(view);
+            if distance < SHORT {
+                let message = format!(
+                    "found {} scene units from camera.eye, expected at least {}; move it apart",
+                    plain(distance),
+                    plain(SHORT)
+                );
+                return Err(("target", message));
+            }
+            if given("view") {
+                let message = "belongs to a camera without eye or target, but both are given; remove one of the three";
+                return Err(("view", message.into()));
+            }
+            lies_across(view, up, "from camera.eye to camera.target")?;
+            Some(distance)
+        }
+        _ => None,
+    };
+    if let Some(view) = camera.written("view").and_then(|node| to_vector(&node.value)) {
+        long_enough("view", view)?;
+        if given("up") {
+            lies_across(view, up, "along camera.view")?;
+        }
     }
     projection_has_its_keys(camera)?;
-    lens_is_no_wider_than_rays_can_bear(camera, distance)
+    let focus = camera.written("focus").map(|_| camera.number("focus")).or(focus);
+    focus.map_or(Ok(()), |focus| lens_is_no_wider_than_rays_can_bear(camera, focus))
+}
+
+/// `up` is not parallel to the line of sight.
+fn lies_across(view: [f64; 3], up: [f64; 3], line: &str) -> Result<(), Fault> {
+    let (v, u) = (view.map(|x| x / length(view)), up.map(|x| x / length(up)));
+    let cross = [v[1] * u[2] - v[2] * u[1], v[2] * u[0] - v[0] * u[2], v[0] * u[1] - v[1] * u[0]];
+    if length(cross) < MIN_SINE {
+        let message = format!(
+            "found a direction parallel to the line of sight {line}, expected one across it; turn it"
+        );
+        return Err(("up", message));
+    }
+    Ok(())
 }
 
 /// Each projection has one key that says how much it shows.
@@ -44,11 +70,6 @@ fn projection_has_its_keys(camera: &Reader<'_>) -> Result<(), Fault> {
         );
         return Err((foreign, message));
     }
-    if projection == "orthographic" && camera.written("height").is_none() {
-        let message = "missing, expected the height of what an orthographic picture shows; add e.g. \
-                       height = 2.0";
-        return Err(("height", message.into()));
-    }
     Ok(())
 }
 
@@ -56,9 +77,8 @@ fn projection_has_its_keys(camera: &Reader<'_>) -> Result<(), Fault> {
 const MAX_APERTURE: f64 = 1000.0;
 
 /// Rays from its rim still go forward.
-fn lens_is_no_wider_than_rays_can_bear(camera: &Reader<'_>, target: f64) -> Result<(), Fault> {
+fn lens_is_no_wider_than_rays_can_bear(camera: &Reader<'_>, focus: f64) -> Result<(), Fault> {
     let aperture = camera.number("aperture");
-    let focus = camera.written("focus").map_or(target, |_| camera.number("focus"));
     if aperture > MAX_APERTURE * focus {
         let message = format!(
             "found {} scene units with a focus at {}, expected at most {MAX_APERTURE} times as much; \

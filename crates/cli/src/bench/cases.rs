@@ -1,6 +1,6 @@
 //! The list of what is timed, each scene of it checked.
 
-use crate::args::{BenchArgs, Overrides};
+use crate::args::{BenchArgs, Overrides, ViewArgs};
 use crate::bench::generated::Made;
 use crate::bench::report::Skipped;
 use crate::bench::suites::{Asked, Suites};
@@ -64,7 +64,7 @@ impl Cases {
 
     fn add_scene(&mut self, path: PathBuf, overrides: &Overrides) -> Result<(), Failure> {
         let values = SceneValues::new(overrides);
-        let input = Input::load(&path, &values, None)?;
+        let input = Input::load(&path, &values, &ViewArgs::default())?;
         let name = input.name();
         let (suite, made, over, paper_ms) = (None, None, None, None);
         self.cases.push(Case { name, suite, input, made, over, paper_ms });
@@ -110,9 +110,10 @@ impl Cases {
                     self.skipped.push(skipped(reason));
                     continue;
                 }
-                let input = Input::load(&row.scene, &values, None).map_err(|failure| {
-                    suites.failure(failure.of(&format!("{suite}: row '{}'", row.name)))
-                })?;
+                let input =
+                    Input::load(&row.scene, &values, &ViewArgs::default()).map_err(|failure| {
+                        suites.failure(failure.of(&format!("{suite}: row '{}'", row.name)))
+                    })?;
                 self.cases.push(Case {
                     name,
                     suite: Some(suite.to_owned()),

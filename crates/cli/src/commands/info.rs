@@ -1,6 +1,6 @@
 //! `info`: what is in a point file, in a scene and the point files it names, or in a picture.
 
-use crate::args::InfoArgs;
+use crate::args::{InfoArgs, ViewArgs};
 use crate::commands::info_picture;
 use crate::console;
 use crate::errors::Failure;
@@ -80,7 +80,7 @@ fn judge(summary: &mut PointSummary, set: &PointSet, progress: &Progress) {
 }
 
 fn of_scene(args: &InfoArgs, progress: &Progress) -> Result<String, Failure> {
-    let input = Input::load(&args.file, &SceneValues::default(), None)?;
+    let input = Input::load(&args.file, &SceneValues::default(), &ViewArgs::default())?;
     let sets = input.read_all(progress)?;
     let plan = input.plan(&sets, None, progress)?;
     let mut summaries: Vec<Arc<PointSummary>> = Vec::new();
@@ -119,7 +119,7 @@ fn scene_json(scene: &Scene, plan: &Plan, summaries: &[Arc<PointSummary>]) -> Va
             })
         })
         .collect();
-    let camera = scene.camera.map(|camera| {
+    let camera = scene.camera.whole().map(|camera| {
         let mut fields = json!({
             "eye": camera.eye,
             "target": camera.target,
@@ -165,7 +165,7 @@ fn write_scene(
     let corner = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
     let [width, height] = scene.image.size;
     writeln!(text, "image    {width}x{height}, samples {}", scene.image.samples)?;
-    match scene.camera {
+    match scene.camera.whole() {
         Some(camera) => writeln!(
             text,
             "camera   at {}, towards {}, {}",

@@ -33,7 +33,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if let Some(columns) = &args.columns {
         values.add_columns(&args.scene, columns)?;
     }
-    let mut input = Input::load(&args.scene, &values, args.up)?.colored_by(args.color.clone())?;
+    let mut input =
+        Input::load(&args.scene, &values, &args.view)?.colored_by(args.color.clone())?;
     let added = Added::of(args, &formats);
     memory::require_picture(input.window(args.crop)?, &formats, added.planes())?;
     files::check_distinct(&outputs, &input.files())?;

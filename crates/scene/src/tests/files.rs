@@ -54,11 +54,25 @@ fn a_point_file_is_a_scene_of_its_own() {
     std::fs::write(&points, "").unwrap();
     let set = ["objects.0.surface.polynomial=\"incomplete\"".to_owned()];
     let scene = Scene::for_point_file(&points, Up::Y, &set).unwrap();
-    assert_eq!((scene.camera, scene.lights.len(), scene.objects.len()), (None, 2, 1));
+    assert_eq!(
+        (scene.camera, scene.lights.len(), scene.objects.len()),
+        (CameraKeys::default(), 2, 1)
+    );
     assert_eq!(scene.objects[0].points, points);
     assert_eq!(scene.objects[0].name, "a \"b\" \\");
     assert_eq!(scene.objects[0].surface.polynomial, Polynomial::Incomplete);
-    assert_eq!(Scene::from_toml(&scene.settings_toml(), Path::new(""), &[]), Ok(scene));
+    // A scene file's lights stay where they are; here the first is the key light, until its direction is given.
+    let fixed = Scene { key_light: None, ..scene.clone() };
+    assert_eq!(Scene::from_toml(&scene.settings_toml(), Path::new(""), &[]), Ok(fixed));
+    assert_eq!(scene.key_light, Some(0));
+    for (set, key_light) in [
+        ("lights.0.irradiance=[1, 1, 1]", Some(0)),
+        ("lights.0.direction=[1, 1, 1]", None),
+        ("lights=[]", None),
+    ] {
+        let scene = Scene::for_point_file(&points, Up::Y, &[set.to_owned()]).unwrap();
+        assert_eq!(scene.key_light, key_light, "{set}");
+    }
     let set = ["image.sizes=3".to_owned()];
     let error = Scene::for_point_file(&points, Up::Y, &set).unwrap_err().to_string();
     assert!(error.contains("--set image.sizes=3: image.sizes: unknown key"), "{error}");

@@ -27,7 +27,7 @@ fn overrides_reach_every_kind_of_place() {
     assert_eq!(scene.objects[0].material.albedo, Albedo::Color([0.0, 0.5, 1.0]));
     assert_eq!(scene.objects[0].name, "a b");
     assert_eq!(scene.image.size, [640, 100], "the other element is the default");
-    assert_eq!(scene.camera.unwrap().up, [0.5, 1.0, 0.0]);
+    assert_eq!(scene.camera.whole().unwrap().up, [0.5, 1.0, 0.0]);
     let light = Light::Point { position: [0.0; 3], intensity: [1.0, 1.0, 9.0], radius: 0.0 };
     assert_eq!(scene.lights, [light]);
 }

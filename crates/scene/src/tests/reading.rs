@@ -17,7 +17,7 @@ fn every_built_key_is_read() {
         aperture: 0.02,
         focus: Some(2.5),
     };
-    assert_eq!(scene.camera, Some(camera));
+    assert_eq!(scene.camera.whole(), Some(camera));
     let image = ImageSettings {
         size: [320, 200],
         samples: 16,
@@ -200,7 +200,7 @@ fn abbe_numbers_are_of_the_lines_d_f_and_c() {
 #[test]
 fn what_is_left_out_is_the_contracts_default() {
     let scene = read(SMALL).unwrap();
-    assert_eq!(scene.camera, None);
+    assert_eq!(scene.camera, CameraKeys::default());
     let image = ImageSettings {
         size: [640, 480],
         samples: 1,
@@ -237,7 +237,7 @@ fn what_is_left_out_is_the_contracts_default() {
     assert_eq!(object.transform, Transform::default());
     assert_eq!((scene.image, scene.render), (ImageSettings::default(), RenderSettings::default()));
     let camera = "[camera]\neye = [0, 0, 1]\ntarget = [0, 0, 0]\n";
-    let camera = read(&format!("{camera}{SMALL}")).unwrap().camera.unwrap();
+    let camera = read(&format!("{camera}{SMALL}")).unwrap().camera.whole().unwrap();
     assert_eq!(camera.up, [0.0, 1.0, 0.0]);
     assert_eq!(camera.projection, Projection::Perspective { vertical_fov: 35.0 });
     assert_eq!((camera.aperture, camera.focus), (0.0, None));

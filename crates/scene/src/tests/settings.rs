@@ -1,6 +1,6 @@
 //! What is written of a scene, and the schema.
 
-use super::{FULL, SMALL, orthographic, read};
+use super::{FULL, SMALL, orthographic, read, read_with};
 use crate::keys::{Absent, Kind, SCENE, Table};
 use crate::not_built::not_built;
 use crate::*;
@@ -48,6 +48,8 @@ fn settings_state_every_built_key() {
     // Only where somebody says so.
     let glass = format!("camera = {{ eye = [0, 0, 1], target = [0, 0, 0], inside = [] }}\n{SMALL}");
     settings += &read(&glass).unwrap().settings_toml();
+    // Of a camera that is framed.
+    settings += &read_with(SMALL, &["camera.view=top"]).unwrap().settings_toml();
     for (name, path) in keys {
         // Columns have names of their own, below the key as a header.
         let is_stated =
