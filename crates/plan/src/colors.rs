@@ -6,7 +6,7 @@ use crate::missing::{NO_VALUE, marked};
 use crate::objects::DEFAULT_ALBEDO;
 use film::linear_from_srgb;
 use points::{ColorEncoding, PointSet};
-use scene::{ColorMap, Object, TextureAxis, Transform};
+use scene::{ColorMap, Object, Scale, TextureAxis, Transform};
 
 /// Names that exporters give to the two places of a point in a texture.
 pub(crate) const UV: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
@@ -82,7 +82,7 @@ pub(crate) fn attribute_values(set: &PointSet, name: &str) -> Result<Vec<f64>, S
 pub(crate) fn attribute_colors(
     object: &Object,
     set: &PointSet,
-    (name, map, range): (&str, ColorMap, Option<[f64; 2]>),
+    (name, map, range, scale): (&str, ColorMap, Option<[f64; 2]>, Scale),
     counts: impl Fn(usize) -> bool,
 ) -> Result<(Vec<[f32; 3]>, [f64; 2]), PlanError> {
     let values = attribute_values(set, name).map_err(|known| PlanError::NoAttribute {
@@ -93,12 +93,19 @@ pub(crate) fn attribute_colors(
     })?;
     let own_range = || {
         let counted = values.iter().copied().enumerate().filter(|&(place, _)| counts(place));
-        let finite = counted.map(|(_, value)| value).filter(|value| value.is_finite());
+        let finite = counted.map(|(_, value)| value).filter(|value| counts_in_range(*value, scale));
         finite.fold(None, |range: Option<[f64; 2]>, value| {
             Some(range.map_or([value; 2], |[low, high]| [low.min(value), high.max(value)]))
         })
     };
     let any = values.iter().any(|value| !value.is_nan());
+    if any && scale == Scale::Log && range.is_none() && own_range().is_none() {
+        return Err(PlanError::NothingPositive {
+            name: object.name.clone(),
+            attribute: name.to_owned(),
+            file: object.points.display().to_string(),
+        });
+    }
     let Some([low, high]) = range.or_else(own_range).filter(|_| any) else {
         return Err(PlanError::NoValues {
             name: object.name.clone(),
@@ -106,19 +113,33 @@ pub(crate) fn attribute_colors(
             file: object.points.display().to_string(),
         });
     };
-    let span = high - low;
     let color = |value: f64| {
         if value.is_nan() {
             return marked(NO_VALUE);
         }
-        // Halves, so that no difference of two numbers overflows.
-        let part = match span != 0.0 {
-            true => (0.5 * value - 0.5 * low) / (0.5 * high - 0.5 * low),
-            false => 0.5,
-        };
-        mapped(map, part.clamp(0.0, 1.0))
+        mapped(map, part_of(value, [low, high], scale))
     };
     Ok((values.into_iter().map(color).collect(), [low, high]))
+}
+
+/// Whether a value takes part in the range of an attribute.
+pub(crate) fn counts_in_range(value: f64, scale: Scale) -> bool {
+    value.is_finite() && (scale == Scale::Linear || value > 0.0)
+}
+
+/// How far a value lies from the lower end of a range to the upper one, 0 to 1; the middle of a range of one value.
+pub(crate) fn part_of(value: f64, [low, high]: [f64; 2], scale: Scale) -> f64 {
+    if low == high {
+        return 0.5;
+    }
+    let part = match scale {
+        // Halves, so that no difference of two numbers overflows.
+        Scale::Linear => (0.5 * value - 0.5 * low) / (0.5 * high - 0.5 * low),
+        // What is not positive lies before any end, whichever is the lower one.
+        Scale::Log if value <= 0.0 => return if low < high { 0.0 } else { 1.0 },
+        Scale::Log => (value.ln() - low.ln()) / (high.ln() - low.ln()),
+    };
+    part.clamp(0.0, 1.0)
 }
 
 /// The colour of a map at 0..=1, linear.

@@ -148,6 +148,19 @@ pub enum PlanError {
         /// Its point file.
         file: String,
     },
+    /// A logarithmic scale without a value that it shows.
+    #[error(
+        "object '{name}': scale = \"log\" shows positive values, but '{attribute}' has none in {file}; leave scale out, or \
+         give a value_range"
+    )]
+    NothingPositive {
+        /// The object.
+        name: String,
+        /// What was asked for.
+        attribute: String,
+        /// Its point file.
+        file: String,
+    },
     /// A texture by u and v for points that have none.
     #[error(
         "object '{name}': material.texture_axis is \"uv\" but {file} has no attributes u and v (nor s and t, \

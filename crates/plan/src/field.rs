@@ -17,7 +17,7 @@ fn points_of(volumes: &Volumes, info: &VolumeInfo) -> std::ops::Range<usize> {
 
 /// The scalar at a place, and its gradient; `None` where no point is in reach (Eq. 14 of docs/method.md, or the sum of
 /// the kernel).
-fn at(volumes: &Volumes, info: &VolumeInfo, x: [f64; 3]) -> Option<(f64, [f64; 3])> {
+pub(crate) fn at(volumes: &Volumes, info: &VolumeInfo, x: [f64; 3]) -> Option<(f64, [f64; 3])> {
     let grid = &info.grid;
     let square_radius = f64::from(info.square_radius);
     let reach = square_radius.sqrt();

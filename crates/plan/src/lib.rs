@@ -7,6 +7,7 @@
 
 mod bulk;
 mod camera;
+mod chord;
 mod chosen;
 mod colors;
 mod crossings;

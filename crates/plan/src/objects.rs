@@ -220,8 +220,8 @@ fn point_values(
         (Albedo::Points, None) => {
             return Err(PlanError::NoColors { name: name.clone(), file: file() });
         }
-        (Albedo::Attribute { name, color_map, range }, _) => {
-            let shown = (name.as_str(), *color_map, *range);
+        (Albedo::Attribute { name, color_map, range, scale }, _) => {
+            let shown = (name.as_str(), *color_map, *range, *scale);
             let (colors, taken) = colors::attribute_colors(object, set, shown, counts)?;
             if range.is_none() {
                 found.range(index, "material.value_range", taken);

@@ -1,8 +1,8 @@
 //! Transfer functions as kernels take them: stops, and integrals up to each (docs/method.md, section 7).
 
-use crate::colors::mapped;
+use crate::colors::{counts_in_range, mapped};
 use kernels::layout::VolumeStop;
-use scene::{ColorMap, Transfer};
+use scene::{ColorMap, Scale, Transfer};
 
 /// Stops that a map of colours becomes.
 const MAP_STOPS: u32 = 65;
@@ -25,7 +25,11 @@ const fn stop_at(value: f32, color: [f32; 3], extinction: f32, emission: [f32; 3
 }
 
 /// A transfer function as stops. `own` is the range of the data, for one that has none.
-pub(crate) fn stops_of(transfer: Option<&Transfer>, own: impl Fn() -> [f64; 2]) -> Vec<VolumeStop> {
+pub(crate) fn stops_of(
+    transfer: Option<&Transfer>,
+    scale: Scale,
+    own: impl Fn() -> [f64; 2],
+) -> Vec<VolumeStop> {
     with_integrals(match transfer {
         None => vec![NO_STOP],
         Some(Transfer::Stops(stops)) => stops
@@ -36,7 +40,7 @@ pub(crate) fn stops_of(transfer: Option<&Transfer>, own: impl Fn() -> [f64; 2]) 
             })
             .collect(),
         Some(Transfer::Map { color_map, range, extinction }) => {
-            map_stops(*color_map, range.unwrap_or_else(own), *extinction)
+            map_stops(*color_map, range.unwrap_or_else(own), *extinction, scale)
         }
     })
 }
@@ -72,25 +76,57 @@ fn with_integrals(mut stops: Vec<VolumeStop>) -> Vec<VolumeStop> {
     stops
 }
 
-/// From the lowest scalar to the highest.
-pub(crate) fn own_range(scalars: &[f64]) -> [f64; 2] {
-    let finite = || scalars.iter().copied().filter(|scalar| (*scalar as f32).is_finite());
-    let low = finite().fold(f64::INFINITY, f64::min);
-    let high = finite().fold(f64::NEG_INFINITY, f64::max);
-    if low <= high { [low, high] } else { [0.0, 1.0] }
+/// The same stops with all extinctions multiplied.
+pub(crate) fn scaled(mut stops: Vec<VolumeStop>, factor: f64) -> Vec<VolumeStop> {
+    for stop in &mut stops {
+        stop.extinction = (f64::from(stop.extinction) * factor) as f32;
+    }
+    with_integrals(stops)
 }
 
-/// Even stops on a map; the middle of the map alone where all scalars are one.
-fn map_stops(map: ColorMap, [low, high]: [f64; 2], extinction: [f64; 2]) -> Vec<VolumeStop> {
+/// From the lowest scalar to the highest; on a logarithmic scale, from the lowest positive one, and `None` without any.
+pub(crate) fn own_range(scalars: &[f64], scale: Scale) -> Option<[f64; 2]> {
+    let counts = |scalar: f64| (scalar as f32).is_finite() && counts_in_range(scalar, scale);
+    let finite = || scalars.iter().copied().filter(|scalar| counts(*scalar));
+    let low = finite().fold(f64::INFINITY, f64::min);
+    let high = finite().fold(f64::NEG_INFINITY, f64::max);
+    match (low <= high, scale) {
+        (true, _) => Some([low, high]),
+        (false, Scale::Linear) => Some([0.0, 1.0]),
+        (false, Scale::Log) => None,
+    }
+}
+
+/// Even stops on a map; the middle of the map alone where all scalars are one. Between stops kernels are linear, so on a
+/// logarithmic scale there are 16 a decade at least.
+fn map_stops(
+    map: ColorMap,
+    [low, high]: [f64; 2],
+    extinction: [f64; 2],
+    scale: Scale,
+) -> Vec<VolumeStop> {
+    // Scalars are f32.
+    let least = f64::from(f32::MIN_POSITIVE);
+    let [low, high] = match scale {
+        Scale::Linear => [low, high],
+        Scale::Log => [low.max(least), high.max(least)],
+    };
     let stop = |part: f64| {
         let extinction = extinction[0] + part * (extinction[1] - extinction[0]);
-        let value = low + part * (high - low);
+        let value = match scale {
+            Scale::Linear => low + part * (high - low),
+            Scale::Log => (low.ln() + part * (high.ln() - low.ln())).exp(),
+        };
         stop_at(value as f32, mapped(map, part), extinction as f32, [0.0; 3])
     };
     if low >= high {
         return vec![stop(0.5)];
     }
-    (0..MAP_STOPS).map(|i| stop(f64::from(i) / f64::from(MAP_STOPS - 1))).collect()
+    let count = match scale {
+        Scale::Linear => MAP_STOPS,
+        Scale::Log => MAP_STOPS.max((16.0 * (high / low).log10()).ceil() as u32 + 1),
+    };
+    (0..count).map(|i| stop(f64::from(i) / f64::from(count - 1))).collect()
 }
 
 #[cfg(test)]
@@ -114,7 +150,7 @@ mod tests {
             stop(0.25, 0.0, 1e-9, 7.0),
             stop(2.0, 0.7, 3e-10, 0.125),
         ];
-        let stops = stops_of(Some(&Transfer::Stops(given.to_vec())), || [0.0, 1.0]);
+        let stops = stops_of(Some(&Transfer::Stops(given.to_vec())), Scale::Linear, || [0.0, 1.0]);
         let mut sums = [0.0f64; 3];
         for at in 1..stops.len() {
             let (from, to) = (&stops[at - 1], &stops[at]);

@@ -3,22 +3,23 @@
 
 use crate::PlanError;
 use crate::bulk::Bulk;
+use crate::chord;
 use crate::chosen::Findings;
 use crate::colors::attribute_values;
 use crate::field;
 use crate::missing::{Lacking, Missing};
 use crate::neighborhoods::{length, open_points, spacing};
-use crate::transfer::{own_range, stops_of};
+use crate::transfer::{own_range, scaled, stops_of};
 use kernels::layout::{
     CELL_ABOVE, CELL_BELOW, CELL_LOOK, CELL_NOTHING, GridInfo, Polynomial, VOLUME_AVERAGE,
     VOLUME_EMISSION, VOLUME_EMITS, VOLUME_GRADIENT, VOLUME_INTEGRAL, VOLUME_ISOSURFACE,
     VOLUME_LIGHTS, VOLUME_MAXIMUM, VOLUME_SCATTERS, VOLUME_SHEPARD, VOLUME_SPH, VOLUME_SUM,
     VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
 };
-use points::{Cloud, PointSet, Watch};
+use points::{Cloud, PointSet, Watch, bounds_of};
 use scene::{
-    Boundary, MaterialKind, Object, PerParticle, Scene, Transfer, Volume, VolumeKernel, VolumeMode,
-    VolumeShading,
+    Boundary, ExtinctionFactor, MaterialKind, Object, PerParticle, Scene, Transfer, Volume,
+    VolumeKernel, VolumeMode, VolumeShading,
 };
 use std::sync::Arc;
 
@@ -144,15 +145,34 @@ pub(crate) fn plan_volumes(
                 (VolumePoint { position, scalar: of.scalar as f32 }, inverse_length)
             })
             .collect();
-        let stops = stops_of(volume.transfer.as_ref(), || own_range(&scalars));
+        let own = own_range(&scalars, volume.scale);
+        if own.is_none()
+            && volume.mode != VolumeMode::Integral
+            && matches!(volume.transfer, Some(Transfer::Map { range: None, .. }))
+        {
+            return Err(PlanError::NothingPositive {
+                name: object.name.clone(),
+                attribute: volume.scalar.clone(),
+                file: object.points.display().to_string(),
+            });
+        }
+        let own = own.unwrap_or([0.0, 1.0]);
+        let stops = stops_of(volume.transfer.as_ref(), volume.scale, || own);
         let lengths = volumes.add(index as u32, object, volume, radius as f32, (points, stops));
         if let Some(Transfer::Map { range: None, .. }) = &volume.transfer {
             let range = match volume.mode {
-                VolumeMode::Integral => volumes.bound_integral(volume.transfer.as_ref()),
-                _ => own_range(&scalars),
+                VolumeMode::Integral => volumes.bound_integral(volume),
+                _ => own,
             };
             found.range(index, "volume.value_range", range);
         }
+        volumes.scale_extinctions(volume.extinction, |volumes, info| {
+            let bounds = bounds_of([&bulk.world[index][..]])?;
+            let local = |corner: [f64; 3]| [0, 1, 2].map(|axis| corner[axis] - origin[axis]);
+            let factor = chord::factor(volumes, info, bounds.map(local))?;
+            found.number(index, "volume.extinction", factor);
+            Some(factor)
+        });
         let is_sph = matches!(volume.kernel, VolumeKernel::Sph { .. });
         for (key, length, is_given) in [
             ("volume.radius", radius, is_sph || volume.radius.is_some()),
@@ -342,11 +362,11 @@ impl Volumes {
 
     /// Gives the last volume, which shows integrals, the stops of a transfer function up to what no ray exceeds, and
     /// returns that range.
-    fn bound_integral(&mut self, transfer: Option<&Transfer>) -> [f64; 2] {
+    fn bound_integral(&mut self, volume: &Volume) -> [f64; 2] {
         let Some(mut info) = self.infos.pop() else { return [0.0; 2] };
         let range = field::bound_of_integrals(self, &info);
         self.stops.truncate(info.first_stop as usize);
-        self.stops.extend(stops_of(transfer, || range));
+        self.stops.extend(stops_of(volume.transfer.as_ref(), volume.scale, || range));
         info.stop_count = self.stops.len() as u32 - info.first_stop;
         self.infos.push(info);
         range
@@ -415,6 +435,24 @@ impl Volumes {
         self.list(&info, &points, step);
         self.infos.push(info);
         Lengths { smoothing: smoothing.into(), step: step.into() }
+    }
+
+    /// Multiplies the extinctions of the last volume; `chosen` says by what where the scene leaves it to the program.
+    fn scale_extinctions(
+        &mut self,
+        factor: ExtinctionFactor,
+        chosen: impl FnOnce(&Self, &VolumeInfo) -> Option<f64>,
+    ) {
+        let Some(info) = self.infos.last() else { return };
+        let factor = match factor {
+            ExtinctionFactor::Given(factor) => factor,
+            ExtinctionFactor::Auto => chosen(self, info).unwrap_or(1.0),
+        };
+        let first = info.first_stop as usize;
+        if factor != 1.0 {
+            let scaled = scaled(self.stops.split_off(first), factor);
+            self.stops.extend(scaled);
+        }
     }
 
     /// Counts, adds up and scatters the points, in their order, and says which cells may show anything.

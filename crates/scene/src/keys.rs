@@ -726,6 +726,14 @@ pub(crate) static MATERIAL: Table = Table {
              has their colours.",
         ),
         key(
+            "scale",
+            Kind::Choice(&crate::scene::Scale::NAMES),
+            Value("\"linear\""),
+            "How values of an attribute lie between the ends of `value_range`: `log`, by their logarithms, for what \
+             spans decades. Values of 0 or less have the colour of the lower end, and the attribute's own range \
+             begins at its smallest positive value then.",
+        ),
+        key(
             "texture",
             Kind::Text("the path of an image"),
             Words("none", "\"grass.png\""),
@@ -894,14 +902,28 @@ pub(crate) static VOLUME: Table = Table {
              0 to the greatest scalar times the diagonal of the box around the volume, which no ray exceeds.",
         ),
         key(
+            "scale",
+            Kind::Choice(&crate::scene::Scale::NAMES),
+            Value("\"linear\""),
+            "With `color_map`: how scalars lie between the ends of `value_range`: `log`, by their logarithms, for what \
+             spans decades, extinctions too. Scalars of 0 or less are as the lower end, and the attribute's own range \
+             begins at its smallest positive value then.",
+        ),
+        key(
             "extinction",
-            Kind::Either(&[Kind::Number(EXTINCTION), Kind::Pair(EXTINCTION)]),
+            Kind::Either(&[
+                Kind::Choice(&["auto"]),
+                Kind::Number(EXTINCTION),
+                Kind::Pair(EXTINCTION),
+            ]),
             Words(
-                "none; required beside `color_map`, but with mode `integral`, which is then opaque",
+                "1 with `transfer`; required beside `color_map`, but with mode `integral`, which is then opaque",
                 "[0.0, 5.0]",
             ),
-            "With `color_map`: σ everywhere, or at the two ends of `value_range` and linear between. With mode \
-             `integral` it is the optical depth of a pixel with that value.",
+            "With `color_map`: σ everywhere, or at the two ends of `value_range` and linear along the map between. With \
+             `transfer`: a factor on the extinctions of its stops. With mode `integral` it is the optical depth of a \
+             pixel with that value. `auto`, in mode `emission`: the σ, or the factor, that makes the optical depth \
+             across the median chord of the object's bulk 2.",
         ),
     ],
 };

@@ -35,11 +35,12 @@ pub use camera_keys::{CameraKeys, ViewFrom, camera_keys_set};
 pub use error::SceneError;
 pub use models::MODELS_VARIABLE;
 pub use scene::{
-    Albedo, Background, Boundary, Camera, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
-    ImageSettings, Light, Material, MaterialKind, Neighbors, Normals, Object, PerParticle,
-    PointColumn, PointColumns, PointFilter, Polynomial, Primary, Projection, RadiusOf, RayLoop,
-    Refine, RenderSettings, Scatter, Scene, Secondary, ShapeRadius, Stop, Surface, SurfaceKind,
-    TextureAxis, Transfer, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
+    Albedo, Background, Boundary, Camera, ColorMap, ExtinctionFactor, FeatureSize, Filter, Fresnel,
+    ImageFile, ImageSettings, Light, Material, MaterialKind, Neighbors, Normals, Object,
+    PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, Primary, Projection, RadiusOf,
+    RayLoop, Refine, RenderSettings, Scale, Scatter, Scene, Secondary, ShapeRadius, Stop, Surface,
+    SurfaceKind, TextureAxis, Transfer, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
+    VoxelEdge,
 };
 pub use schema::{json_schema, suite_json_schema};
 pub use suite::{Shape, SimulatedScan, Suite, SuiteRow};

@@ -6,11 +6,12 @@ use crate::keys::{self, SCENE};
 use crate::models::{self, MODELS_VARIABLE};
 use crate::read::{Reader, to_number, to_vector};
 use crate::{
-    Albedo, Background, Boundary, CameraKeys, ColorMap, FeatureSize, Filter, Fresnel, ImageFile,
-    ImageSettings, Light, Material, MaterialKind, Neighbors, Normals, Object, PerParticle,
-    PointFilter, Polynomial, Primary, RadiusOf, RayLoop, Refine, RenderSettings, Scatter, Scene,
-    SceneError, Secondary, ShapeRadius, Stop, Surface, SurfaceKind, TextureAxis, Transfer,
-    Transform, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
+    Albedo, Background, Boundary, CameraKeys, ColorMap, ExtinctionFactor, FeatureSize, Filter,
+    Fresnel, ImageFile, ImageSettings, Light, Material, MaterialKind, Neighbors, Normals, Object,
+    PerParticle, PointFilter, Polynomial, Primary, RadiusOf, RayLoop, Refine, RenderSettings,
+    Scale, Scatter, Scene, SceneError, Secondary, ShapeRadius, Stop, Surface, SurfaceKind,
+    TextureAxis, Transfer, Transform, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
+    VoxelEdge,
 };
 use std::env;
 use std::fs::{self, File};
@@ -448,7 +449,8 @@ impl Volume {
                         Some(_) => table.written_range("value_range"),
                     },
                     // None is asked for, and none is needed, by an isosurface; an integral is opaque.
-                    extinction: match table.written("extinction") {
+                    extinction: match table.written("extinction").map(|node| &node.value) {
+                        Some(Value::Text(_)) => [1.0; 2],
                         Some(_) => table.pair("extinction"),
                         None if table.text("mode") == "integral" => [OPAQUE; 2],
                         None => [0.0; 2],
@@ -456,6 +458,14 @@ impl Volume {
                 }),
                 None if stops.is_empty() => None,
                 None => Some(Transfer::Stops(stops.iter().map(Stop::read).collect())),
+            },
+            scale: Scale::read(&table.text("scale")),
+            extinction: match table.written("extinction").map(|node| &node.value) {
+                Some(Value::Text(_)) => ExtinctionFactor::Auto,
+                Some(number) if !stops.is_empty() => {
+                    ExtinctionFactor::Given(to_number(number).unwrap_or(1.0))
+                }
+                _ => ExtinctionFactor::Given(1.0),
             },
             shading: match table.text("shading").as_str() {
                 "gradient" => VolumeShading::Gradient,
@@ -589,6 +599,7 @@ impl Albedo {
                     name: name.trim().to_owned(),
                     color_map: ColorMap::read(&table.text("color_map")),
                     range: table.written_range("value_range"),
+                    scale: Scale::read(&table.text("scale")),
                 },
                 None => Self::Points,
             },
@@ -621,6 +632,12 @@ fn ior_of_channels(table: &Reader<'_>) -> [f64; 3] {
 impl ColorMap {
     fn read(name: &str) -> Self {
         Self::ALL.into_iter().find(|map| map.name() == name).unwrap_or(Self::Viridis)
+    }
+}
+
+impl Scale {
+    fn read(name: &str) -> Self {
+        if name == Self::Log.name() { Self::Log } else { Self::Linear }
     }
 }
 

@@ -299,6 +299,10 @@ pub struct Volume {
     /// What each scalar looks like; of an isosurface whose material has no albedo, the colour at its
     /// scalar.
     pub transfer: Option<Transfer>,
+    /// How scalars lie between the ends of a colour map's range.
+    pub scale: Scale,
+    /// What all extinctions of the transfer function are multiplied by.
+    pub extinction: ExtinctionFactor,
     /// What the light of the scene does in it.
     pub shading: VolumeShading,
 }
@@ -587,8 +591,10 @@ pub enum Albedo {
         name: String,
         /// The colours that it is shown in.
         color_map: ColorMap,
-        /// Values at the two ends of the map, the second greater; the attribute's own where `None`.
+        /// Values at the two ends of the map; the attribute's own where `None`.
         range: Option<[f64; 2]>,
+        /// How values lie between these.
+        scale: Scale,
     },
     /// An image.
     Texture {
@@ -637,6 +643,35 @@ impl ColorMap {
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize]
     }
+}
+
+/// How values lie between the ends of a colour map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Scale {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// Their logarithms do. Values that are not positive have the colour of the lower end.
+    Log,
+}
+
+impl Scale {
+    /// Their names in scene files.
+    pub const NAMES: [&str; 2] = ["linear", "log"];
+
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
+/// What all extinctions of a volume are multiplied by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ExtinctionFactor {
+    /// This, 0 to 1e15.
+    Given(f64),
+    /// What makes the optical depth across the median chord 2.
+    Auto,
 }
 
 /// How a texture lies on an object.

@@ -1,10 +1,10 @@
 //! A scene as canonical TOML, for the header of the pictures it makes.
 
 use crate::{
-    Albedo, Boundary, FeatureSize, Filter, Fresnel, Light, Material, MaterialKind, Neighbors,
-    Normals, Object, PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, RadiusOf,
-    Refine, RenderSettings, Scatter, Scene, Surface, SurfaceKind, TextureAxis, Transfer, Units,
-    Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
+    Albedo, Boundary, ExtinctionFactor, FeatureSize, Filter, Fresnel, Light, Material,
+    MaterialKind, Neighbors, Normals, Object, PerParticle, PointColumn, PointColumns, PointFilter,
+    Polynomial, RadiusOf, Refine, RenderSettings, Scatter, Scene, Surface, SurfaceKind,
+    TextureAxis, Transfer, Units, Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
 };
 use std::fmt::{self, Write};
 
@@ -208,9 +208,18 @@ fn write_volume(out: &mut String, volume: &Volume) -> fmt::Result {
             } else if volume.mode == VolumeMode::Integral {
                 writeln!(out, "value_range = \"auto\"")?;
             }
-            return writeln!(out, "extinction = {extinction:?}");
+            writeln!(out, "scale = \"{}\"", volume.scale.name())?;
+            return match volume.extinction {
+                ExtinctionFactor::Auto => writeln!(out, "extinction = \"auto\""),
+                ExtinctionFactor::Given(_) => writeln!(out, "extinction = {extinction:?}"),
+            };
         }
     };
+    match volume.extinction {
+        ExtinctionFactor::Auto => writeln!(out, "extinction = \"auto\"")?,
+        ExtinctionFactor::Given(1.0) => {}
+        ExtinctionFactor::Given(factor) => writeln!(out, "extinction = {factor:?}")?,
+    }
     for stop in stops {
         writeln!(out, "\n[[objects.volume.transfer]]")?;
         writeln!(out, "value = {:?}", stop.value)?;
@@ -241,9 +250,10 @@ fn write_material(out: &mut String, material: &Material) -> fmt::Result {
         Albedo::Default => Ok(()),
         Albedo::Points => writeln!(out, "albedo = \"points\""),
         Albedo::Color(color) => writeln!(out, "albedo = {color:?}"),
-        Albedo::Attribute { name, color_map, range } => {
+        Albedo::Attribute { name, color_map, range, scale } => {
             writeln!(out, "albedo = {}", quoted(&format!("attribute:{name}")))?;
             writeln!(out, "color_map = \"{}\"", color_map.name())?;
+            writeln!(out, "scale = \"{}\"", scale.name())?;
             match range {
                 Some(range) => writeln!(out, "value_range = {range:?}"),
                 None => Ok(()),

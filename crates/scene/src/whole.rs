@@ -161,7 +161,12 @@ pub(crate) fn volume_says_it_once(volume: &Reader<'_>) -> Result<(), Fault> {
     }
     let owned = [
         ("value_range", has("color_map"), "color_map, but there is none"),
-        ("extinction", has("color_map"), "color_map, but there is none"),
+        (
+            "extinction",
+            has("color_map") || has("transfer"),
+            "color_map or transfer, but there is neither",
+        ),
+        ("scale", has("color_map"), "color_map, but there is none"),
         (
             "smoothing_length",
             volume.text("kernel") == "sph",
@@ -175,6 +180,26 @@ pub(crate) fn volume_says_it_once(volume: &Reader<'_>) -> Result<(), Fault> {
         ("shading", volume.text("mode") == "emission", "mode \"emission\", but mode is another"),
     ];
     isosurface_fits(volume)?;
+    let extinction = volume.written("extinction").map(|node| &node.value);
+    if has("transfer") && matches!(extinction, Some(Value::List(_))) {
+        let message = "found two numbers beside transfer, expected a factor on the extinctions of its stops; \
+                       write one number, or \"auto\"";
+        return Err(("extinction", message.into()));
+    }
+    if matches!(extinction, Some(Value::Text(_))) && volume.text("mode") != "emission" {
+        let message = "\"auto\" belongs to mode \"emission\", but mode is another; write a number";
+        return Err(("extinction", message.into()));
+    }
+    range_fits_scale(volume)?;
+    let range = volume.written("value_range").map(|node| &node.value);
+    if volume.text("mode") == "integral"
+        && volume.text("scale") == "log"
+        && matches!(range, Some(Value::Text(_)))
+    {
+        let message = "found \"auto\", which begins at 0, beside scale = \"log\", expected two numbers over 0; write \
+                       e.g. [0.01, 100.0]";
+        return Err(("value_range", message.into()));
+    }
     for (name, fits, owner) in owned {
         if has(name) && !fits {
             return Err((name, format!("belongs to {owner}; remove one")));
@@ -287,6 +312,26 @@ pub(crate) fn stops_ascend(volume: &Reader<'_>) -> Result<(), Fault> {
     }
 }
 
+/// A logarithmic scale has positive ends.
+fn range_fits_scale(table: &Reader<'_>) -> Result<(), Fault> {
+    let is_auto =
+        matches!(table.written("value_range").map(|node| &node.value), Some(Value::Text(_)));
+    if table.text("scale") != "log" || is_auto {
+        return Ok(());
+    }
+    let range = table.written_range("value_range");
+    match range.and_then(|range| range.into_iter().find(|end| *end <= 0.0)) {
+        Some(end) => Err((
+            "value_range",
+            format!(
+                "found {} beside scale = \"log\", expected numbers over 0; raise it, or leave scale out",
+                plain(end)
+            ),
+        )),
+        None => Ok(()),
+    }
+}
+
 /// A material has an albedo or a texture, and what belongs to one of them only with that.
 pub(crate) fn material_has_one_color(material: &Reader<'_>) -> Result<(), Fault> {
     let has = |name: &str| material.written(name).is_some();
@@ -300,7 +345,8 @@ pub(crate) fn material_has_one_color(material: &Reader<'_>) -> Result<(), Fault>
     }
     let albedo = material.written("albedo").map(|node| &node.value);
     let of_attribute = matches!(albedo, Some(Value::Text(text)) if text != "points");
-    for name in ["color_map", "value_range"] {
+    range_fits_scale(material)?;
+    for name in ["color_map", "value_range", "scale"] {
         if has(name) && !of_attribute {
             let message = "belongs to the albedo of an attribute, but there is none; write albedo = \
                            \"attribute:NAME\", or remove it";

@@ -6,7 +6,12 @@ use crate::*;
 #[test]
 fn attributes_have_a_map_and_their_own_range_if_none_is_given() {
     let scene = read_with(SMALL, &["objects.0.material.albedo=attribute:z"]).unwrap();
-    let height = Albedo::Attribute { name: "z".into(), color_map: ColorMap::Viridis, range: None };
+    let height = Albedo::Attribute {
+        name: "z".into(),
+        color_map: ColorMap::Viridis,
+        range: None,
+        scale: Scale::Linear,
+    };
     assert_eq!(scene.objects[0].material.albedo, height);
     for (map, name) in ColorMap::ALL.into_iter().zip(ColorMap::NAMES) {
         assert_eq!(map.name(), name);

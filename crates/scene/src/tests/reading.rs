@@ -98,6 +98,7 @@ fn every_built_key_is_read() {
         name: "intensity \"raw\"".into(),
         color_map: ColorMap::Turbo,
         range: Some([-1.0, 2.5]),
+        scale: Scale::Linear,
     };
     assert_eq!(scene.objects[2].material.albedo, intensity);
     let of = RadiusOf::Attribute("diameter".into());
@@ -138,6 +139,8 @@ fn every_built_key_is_read() {
             stop(0.0, [0.0, 0.0, 1.0], 0.0),
             stop(1.0, [1.0, 0.3, 0.0], 8.0),
         ])),
+        scale: Scale::Linear,
+        extinction: ExtinctionFactor::Given(1.0),
         shading: VolumeShading::None,
     };
     assert_eq!(scene.objects[5].volume, Some(volume));

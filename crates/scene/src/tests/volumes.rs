@@ -12,7 +12,20 @@ fn a_volume_says_once_what_a_scalar_looks_like() {
         (format!("{stops}color_map = \"gray\""), "color_map: found both transfer and color_map"),
         ("color_map = \"gray\"".into(), "extinction: missing, expected the extinction"),
         (format!("{stops}value_range = [0, 1]"), "value_range: belongs to color_map"),
-        (format!("{stops}extinction = 1"), "extinction: belongs to color_map"),
+        (format!("{stops}extinction = [1, 2]"), "extinction: found two numbers beside transfer"),
+        (format!("{stops}scale = \"log\""), "scale: belongs to color_map"),
+        (
+            "color_map = \"gray\"\nextinction = \"auto\"\nmode = \"maximum\"".into(),
+            "extinction: \"auto\" belongs to mode \"emission\"",
+        ),
+        (
+            "color_map = \"gray\"\nextinction = 1\nscale = \"log\"\nvalue_range = [0, 1]".into(),
+            "value_range: found 0 beside scale = \"log\"",
+        ),
+        (
+            "mode = \"isosurface\"\niso = 1\nextinction = 1".into(),
+            "extinction: belongs to color_map",
+        ),
         (format!("{stops}iso = 1"), "iso: belongs to mode \"isosurface\""),
         (format!("{stops}mass = 1"), "mass: belongs to kernel \"sph\""),
         (format!("{stops}mode = \"isosurface\""), "iso: missing"),
