@@ -40,9 +40,8 @@ uint rays_behind(Path path, Media media, uint object, uint way) {
     bool spent = path.bounces >= params.max_bounces;
     if (object_at(object).material != MATERIAL_GLASS) return spent ? 0u : 1u;
     Crossing crossing = crossing_of(media, object, way);
-    bool passes = crossing.before == crossing.after;
     uint count = splits(crossing, path.channels) ? 3u : 1u;
-    return passes ? (path.crossings < MOST_CROSSINGS ? 1u : 0u) : (spent ? 0u : count);
+    return passes(crossing, path.channels) ? (path.crossings < MOST_CROSSINGS ? 1u : 0u) : (spent ? 0u : count);
 }
 
 void main() {

@@ -100,6 +100,10 @@ void main() {
 #ifdef LEAVES
             bool own = p.object == left_object && same_sheet(p, o, left_normal);
             float from = own ? SHEET_REACH * p.center_trust.w : 0.0;
+            if (scene_has(SCENE_VOLUMES) && scene_has(SCENE_CLEAR)) {
+                bool starts_near = ray.left == NONE && p.object == (params.passed ^ PASSED_NEAR);
+                from = starts_near ? SHEET_REACH * p.center_trust.w : from;
+            }
             if (scene_has(SCENE_SPHERES)) from = is_sphere(p.gradient_offset.xyz) ? 0.0 : from;
 #else
             float from = 0.0;

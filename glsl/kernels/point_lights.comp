@@ -21,5 +21,8 @@ void main() {
     uint at = list_index();
     if (at >= params.count) return;
     bool blocked = load_ray(at).hit_slot != NONE;
-    visible[(params.first + at) * uint(VOLUME_LIGHTS) + params.light] = blocked ? 0.0 : light_sums[at].arriving.x;
+    vec3 arriving = light_sums[at].arriving; // by channel where media absorb
+    bool is_grey = arriving.x == arriving.y && arriving.y == arriving.z;
+    float share = is_grey ? arriving.x : ((arriving.x + arriving.y) + arriving.z) / 3.0;
+    visible[(params.first + at) * uint(VOLUME_LIGHTS) + params.light] = blocked ? 0.0 : share;
 }

@@ -2,7 +2,7 @@
 //
 // reads   volumes, their cells and points, lights, grid
 // writes  the shadow rays' state
-//         paths            inside of the volume's own object
+//         paths            inside the volume's own object; as shadow_media has them
 //         light_sums       1: all of the light
 //         lit_rays         each its own path
 // runs    one invocation per point of a batch
@@ -39,6 +39,10 @@ void main() {
     ray.hit_t = light.distance;
     store_ray(at, ray);
     paths[at].pixel = 0u;
+    paths[at].channels = NONE;
+    paths[at].bounces = 0u;
+    paths[at].crossings = 0u;
+    paths[at].depth = light.distance;
     paths[at].media_count = 1u;
     paths[at].media[0] = volume.object;
     lit_rays[at] = at;

@@ -121,15 +121,17 @@ struct Turn {
 void send(Turn turn, Path path, uint channels, uint to) {
     vec3 d = turn.d, n = turn.hit.normal;
     uint was_reflected = path.channels & uint(PATH_REFLECTED);
-    bool passes = turn.is_glass && turn.crossing.before == turn.crossing.after;
+    bool passed = turn.is_glass && passes(turn.crossing, path.channels);
     vec3 n1 = ior_of(turn.crossing.before), n2 = ior_of(turn.crossing.after);
     bool red = (channels & 1u) != 0u, green = channels == 2u;
-    Refraction bent = refraction(d, n, red ? n1.x : (green ? n1.y : n1.z), red ? n2.x : (green ? n2.y : n2.z));
+    float index = red ? n1.x : (green ? n1.y : n1.z), beyond = red ? n2.x : (green ? n2.y : n2.z);
+    Refraction bent = refraction(d, n, index, beyond);
     bool by_chance = scene_has(SCENE_CHANCE) && turn.chance < bent.reflectance;
-    bool reflects = !turn.is_glass || (!passes && (bent.total || by_chance));
-    vec3 direction = reflects ? reflected(d, n) : (passes ? d : bent.direction);
+    bool straight = passed || (scene_has(SCENE_CLEAR) && index == beyond);
+    bool reflects = !turn.is_glass || (!straight && (bent.total || by_chance));
+    vec3 direction = reflects ? reflected(d, n) : (straight ? d : bent.direction);
     if (turn.goes_on) {
-        store_path(to, turn.ray, path, turn.throughput, channels | was_reflected, !passes, !reflects, turn.object,
+        store_path(to, turn.ray, path, turn.throughput, channels | was_reflected, !passed, !reflects, turn.object,
                    turn.crossing.place);
         uint cell = enter_scene(turn.hit.position, direction);
         store_ray(to, new_ray(turn.hit.position, direction, cell, turn.slot));
@@ -171,7 +173,7 @@ void main() {
     Turn turn = Turn(at, ray.direction, hit_of(at), ray.hit_slot, object, is_glass, crossing,
                      path.throughput * (is_glass ? vec3(1.0) : albedo), chance, to, (marks.x >> bit & 1u) != 0u);
     if (scene_has(SCENE_DISPERSES)) {
-        bool is_split = is_glass && splits(crossing, all);
+        bool is_split = is_glass && splits(crossing, all) && !passes(crossing, all);
         uint count = is_split ? 3u : 1u;
         for (uint i = 0u; i < count; ++i) send(turn, path, is_split ? 1u << i : all, to + i);
     } else {

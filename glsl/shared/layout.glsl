@@ -159,6 +159,7 @@
 #define MOST_CROSSINGS 1024 // surfaces a path may pass through that do not change its medium
 #define CHANNELS_ALL 7 // a path's channels: 1 red, 2 green, 4 blue
 #define PATH_REFLECTED 8 // beside them: the path was reflected somewhere
+#define PASSED_NEAR 0x80000000u // beside an object that is passed: its surface is not there near the ray's start alone
 
 // Of a wave.
 #define WAVE_FROM_CAMERA 1  // its rays come from there
@@ -187,6 +188,7 @@
 #define SCENE_SHAPES 524288 // some points are spheres or discs
 #define SCENE_SPHERES 1048576 // some are spheres
 #define SCENE_TURNED 2097152 // the environment is turned
+#define SCENE_CLEAR 4194304 // glass may meet a medium of its own index
 
 // What transparent pictures leave the background out of.
 #define TRANSPARENT_CAMERA 1 // camera rays
@@ -217,6 +219,7 @@
 #define TREE_BOXES 53
 #define TREE_NODES 54
 #define MARCH_ENDS 55 // by ray and volume
+#define SHADOW_PATHS 56 // of shadow rays, where light may pass surfaces
 #define SHADE_IMAGES 30
 #define SHADE_TEXELS 31
 
@@ -426,7 +429,7 @@ struct TraceParams {     // 24 bytes
     uint work;           //  8  loop iterations a ray may spend in this pass
     uint any_hit;        // 12  1: any hit ends a ray
     uint listed;         // 16  1: rays are those of a list, and their state stays where it is
-    uint passed;         // 20  object whose surface is not there, or NONE
+    uint passed;         // 20  object whose surface is not there, or NONE; with PASSED_NEAR
 };
 
 // Some nodes of one level of the tree.
@@ -437,6 +440,14 @@ struct TreeLevelParams { // 24 bytes
     uint first_child;    // 12  the first node of the level below
     uint children;       // 16  nodes of the level below; of leaves, points
     uint first_bound;    // 20  the node that what is bound of all begins with
+};
+
+// Of shadow rays where light may pass surfaces. Of their paths, `channels` is the slot of the surface that a ray has
+// met and goes through, or NONE; `bounces` 1 once it has ended; `depth` what is left of the way to the light.
+struct ShadowParams {    // 12 bytes
+    uint ray_count;      //  0
+    uint passed;         //  4  object whose surface is not there, or NONE
+    uint counts;         //  8  1: the work of rays is counted in the film
 };
 
 // Where the leaves of the tree are.

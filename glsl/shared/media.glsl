@@ -101,6 +101,18 @@ vec3 ior_of(uint medium) {
     return medium == NONE ? vec3(1.0) : ior;
 }
 
+// Whether a ray of these channels goes through as if there were nothing: the medium stays, or has the same index.
+bool passes(Crossing crossing, uint channels) {
+    bool passed = crossing.before == crossing.after;
+    if (scene_has(SCENE_CLEAR)) {
+        bvec3 differs = notEqual(ior_of(crossing.before), ior_of(crossing.after));
+        bvec3 carried = notEqual(uvec3(channels) & uvec3(1u, 2u, 4u), uvec3(0u));
+        bvec3 bent = equal(uvec3(differs) & uvec3(carried), uvec3(1u));
+        passed = passed || !any(bent);
+    }
+    return passed;
+}
+
 bool disperses(uint medium) {
     vec3 ior = ior_of(medium);
     return ior.x != ior.y || ior.y != ior.z;

@@ -145,6 +145,10 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
 #ifdef LEAVES
             bool own = p.object == left_object && same_sheet(p, o, left_normal);
             float from = own ? SHEET_REACH * p.center_trust.w : 0.0;
+            if (scene_has(SCENE_VOLUMES) && scene_has(SCENE_CLEAR)) {
+                bool starts_near = ray.left == NONE && p.object == (passed ^ PASSED_NEAR);
+                from = starts_near ? SHEET_REACH * p.center_trust.w : from;
+            }
             if (scene_has(SCENE_SPHERES)) from = is_sphere(p.gradient_offset.xyz) ? 0.0 : from;
 #else
             float from = 0.0;

@@ -381,12 +381,13 @@ transform = { translate = [1.1, 0.0, 0.0], scale = 0.5 }
     assert_eq!((least, most), (1.0, 1.0));
 }
 
-/// A picture of parallel rays that meet the level y = 0 at this angle to its normal.
+/// A picture of parallel rays that meet the level y = 0 at this angle to its normal. Its up is no axis, which would be the
+/// top of the environment.
 fn slanted(degrees: f64, size: [usize; 2]) -> String {
     let (sin, cos) = degrees.to_radians().sin_cos();
     format!(
         "[camera]\nprojection = \"orthographic\"\nheight = 0.5\neye = [{}, {}, 0.1]\ntarget = [0.0, 0.0, 0.1]\n\
-         up = [0.0, 0.0, -1.0]\n[image]\nsize = {size:?}\n",
+         up = [0.0, 1e-6, -1.0]\n[image]\nsize = {size:?}\n",
         3.0 * sin,
         3.0 * cos
     )
@@ -566,8 +567,8 @@ fn sheets_close_to_each_other_shade_each_other() {
     println!("sheets: 0 wrong of {measured}");
 }
 
-/// The same for curved sheets: under a skin of glass of index 1, which shades and is not seen, a ball is
-/// black; and a ball under it does not shade the skin.
+/// The same for curved sheets: under a skin of glass of almost index 1, which shades and is not seen, a
+/// ball is black; and a ball under it does not shade the skin.
 #[test]
 fn a_skin_shades_the_ball_under_it_and_not_itself() {
     let count = 10_000;
@@ -589,7 +590,7 @@ fn a_skin_shades_the_ball_under_it_and_not_itself() {
                  surface = {{ polynomial = \"{polynomial}\" }}\n",
                 1.0 - gap * spacing
             );
-            let glass = scene("kind = \"glass\", ior = 1.0", &ball);
+            let glass = scene("kind = \"glass\", ior = 1.000001", &ball);
             let lit = |film: &Film| film.color.iter().filter(|color| color[0] > 0.0).count();
             // Before white, whatever misses the ball under the skin would be white.
             let white = format!("[background]\ncolor = [1.0, 1.0, 1.0]\n{glass}");

@@ -244,6 +244,8 @@ constants! {
     CHANNELS_ALL = 7;
     /// Bit beside them: the path was reflected somewhere.
     PATH_REFLECTED = 8;
+    /// Beside an object in [`TraceParams::passed`]: its surface is not there near the ray's start alone.
+    PASSED_NEAR = 0x8000_0000;
     /// [`WaveParams::transparent`]: camera rays leave the background out.
     TRANSPARENT_CAMERA = 1;
     /// [`WaveParams::transparent`]: and so does all that was refracted alone.
@@ -300,6 +302,8 @@ constants! {
     TREE_NODES = 54;
     /// Binding of `march`: the ends of steps by ray and volume.
     MARCH_ENDS = 55;
+    /// Binding of the kernels that let light pass surfaces: a [`Path`] a shadow ray.
+    SHADOW_PATHS = 56;
     /// [`WaveParams::flags`]: rays come from the camera.
     WAVE_FROM_CAMERA = 1;
     /// [`WaveParams::flags`]: all rays have the camera's path, but for the pixel.
@@ -348,6 +352,8 @@ constants! {
     SCENE_SPHERES = 1_048_576;
     /// The environment is turned.
     SCENE_TURNED = 2_097_152;
+    /// Glass may meet a medium of its own index.
+    SCENE_CLEAR = 4_194_304;
     /// Grids of a scene, at most.
     MOST_LEVELS = 16;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.
@@ -1341,6 +1347,19 @@ gpu_layout!(IsoSearch, 80, {
     value_high: 44, here: 48, state: 52, place: 56, volume: 60, row: 64, cursor: 68, side: 72, looked: 76,
 });
 
+/// Push constants of `shadow_meet` and `shadow_go_on`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct ShadowParams {
+    /// Shadow rays.
+    pub ray_count: u32,
+    /// Object whose surface is not there, or `NONE`.
+    pub passed: u32,
+    /// 1: the work of rays is counted in the film.
+    pub counts: u32,
+}
+gpu_layout!(ShadowParams, 12, { ray_count: 0, passed: 4, counts: 8 });
+
 /// Push constants of `point_rays` and `point_lights`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
@@ -1506,6 +1525,7 @@ pub const STRUCTS: &[StructLayout] = &[
     MarchLight::LAYOUT,
     IsoSearch::LAYOUT,
     PointLightParams::LAYOUT,
+    ShadowParams::LAYOUT,
     MarchParams::LAYOUT,
     LightSum::LAYOUT,
     StateRay::LAYOUT,

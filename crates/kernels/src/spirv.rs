@@ -172,6 +172,18 @@ modules! {
     shade,
     /// `shade` for rays in a queue.
     shade_queue,
+    /// Shadow rays on the other side of surfaces that let them through.
+    shadow_go_on,
+    /// `shadow_go_on` for rays in a queue.
+    shadow_go_on_queue,
+    /// What shadow rays start inside.
+    shadow_media,
+    /// `shadow_media` for rays in a queue.
+    shadow_media_queue,
+    /// What the surfaces that shadow rays have met do to light.
+    shadow_meet,
+    /// `shadow_meet` for rays in a queue.
+    shadow_meet_queue,
     /// Rays towards a light.
     shadow_rays,
     /// `shadow_rays` for rays in a queue.
@@ -243,6 +255,9 @@ pub const VARIANTS: &[(&str, &str, &[&str])] = &[
     ("resume_queue", "resume", &["QUEUE"]),
     ("scatter_queue", "scatter", &["QUEUE"]),
     ("shade_queue", "shade", &["QUEUE"]),
+    ("shadow_go_on_queue", "shadow_go_on", &["QUEUE"]),
+    ("shadow_media_queue", "shadow_media", &["QUEUE"]),
+    ("shadow_meet_queue", "shadow_meet", &["QUEUE"]),
     ("shadow_rays_queue", "shadow_rays", &["QUEUE"]),
     ("smooth_sizes_texels", "smooth_sizes", &["POINTS_AS_TEXELS"]),
     ("surface_hit_queue", "surface_hit", &["QUEUE"]),

@@ -118,7 +118,7 @@ fn group_sizes_and_bindings_match_the_host() {
             if let [_, Operand::Decoration(Decoration::Binding), Operand::LiteralBit32(binding)] =
                 line.operands.as_slice()
             {
-                assert!(*binding <= layout::TREE_NODES, "{kernel}: binding {binding}");
+                assert!(*binding <= layout::SHADOW_PATHS, "{kernel}: binding {binding}");
             }
         }
     }

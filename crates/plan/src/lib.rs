@@ -9,6 +9,7 @@ mod bulk;
 mod camera;
 mod chord;
 mod chosen;
+mod clear;
 mod colors;
 mod crossings;
 mod degrees;
@@ -63,10 +64,10 @@ use images::{ImageList, Use};
 use kernels::layout::{
     self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, MATERIAL_DIFFUSE,
     MATERIAL_GLASS, MEDIA_WORDS, NONE, ObjectInfo, SCENE_ABSORBS, SCENE_ALPHA, SCENE_BLENDS,
-    SCENE_CHANCE, SCENE_DIAGNOSTICS, SCENE_DIFFUSE, SCENE_DISPERSES, SCENE_ENVIRONMENT,
-    SCENE_LIGHTS, SCENE_MANY_LIGHTS, SCENE_NESTED, SCENE_REFINES, SCENE_SAMPLES, SCENE_SCATTERS,
-    SCENE_SHAPES, SCENE_SPHERES, SCENE_TEXTURES, SCENE_TURNED, SCENE_VALUES, SCENE_VOLUMES,
-    TRANSPARENT_CAMERA, TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
+    SCENE_CHANCE, SCENE_CLEAR, SCENE_DIAGNOSTICS, SCENE_DIFFUSE, SCENE_DISPERSES,
+    SCENE_ENVIRONMENT, SCENE_LIGHTS, SCENE_MANY_LIGHTS, SCENE_NESTED, SCENE_REFINES, SCENE_SAMPLES,
+    SCENE_SCATTERS, SCENE_SHAPES, SCENE_SPHERES, SCENE_TEXTURES, SCENE_TURNED, SCENE_VALUES,
+    SCENE_VOLUMES, TRANSPARENT_CAMERA, TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
 };
 use lights::local_light;
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
@@ -151,6 +152,8 @@ pub struct Plan {
     pub cleaned: Vec<Cleaned>,
     /// All lights.
     pub lights: Vec<layout::Light>,
+    /// Whether their light passes surfaces between media of one index, of which there are some: shadow rays go on there.
+    pub light_passes: bool,
     /// The full image: columns and rows.
     pub image_size: [u32; 2],
     /// What of it is rendered.
@@ -302,6 +305,8 @@ impl Plan {
         let scene_lights = framing::lights_for(&scene.lights, scene.key_light, &camera);
         let lights =
             scene_lights.iter().map(|light| local_light(light, &camera, cloud.origin)).collect();
+        let light_passes =
+            !scene_lights.is_empty() && clear::lets_light_pass(&objects, &cloud, &shapes);
         let framed =
             Scene { camera: camera.into(), lights: scene_lights, key_light: None, ..scene.clone() };
         Ok(Self {
@@ -347,6 +352,7 @@ impl Plan {
             image_files: list.files,
             cleaned: list.cleaned,
             lights,
+            light_passes,
             image_size,
             window,
             names: scene.objects.iter().map(|object| object.name.clone()).collect(),
@@ -514,6 +520,7 @@ impl Plan {
             (SCENE_VOLUMES, !self.volumes.infos.is_empty()),
             (SCENE_MANY_LIGHTS, self.lights.len() > 1),
             (SCENE_TURNED, self.turns_environment()),
+            (SCENE_CLEAR, self.may_be_clear()),
         ]
         .into_iter()
         .fold(0, |bits, (bit, is_set)| if is_set { bits | bit } else { bits })

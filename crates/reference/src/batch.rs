@@ -7,6 +7,7 @@
 use crate::camera_rays::Ray;
 use crate::polynomial::{Polynomial, SHEET_REACH};
 use crate::real::{NO_HIT, Real, V3};
+use kernels::layout::{NONE, PASSED_NEAR};
 
 /// Points tested before any is solved: the test uses the nearest hit of before the batch.
 pub(crate) const BATCH: usize = 32;
@@ -35,7 +36,9 @@ pub(crate) fn test_batch<R: Real>(
         let own =
             sheet.is_some_and(|(normal, object)| p.object == object && p.same_sheet(o, normal));
         let is_sphere = p.is_sphere();
-        let from = if own && !is_sphere { R::of(SHEET_REACH) * p.trust } else { R::of(0.0) };
+        let starts_near = ray.left == NONE && p.object == ray.passed ^ PASSED_NEAR;
+        let skips = (own || starts_near) && !is_sphere;
+        let from = if skips { R::of(SHEET_REACH) * p.trust } else { R::of(0.0) };
         let passed = p.object == ray.passed;
         let t = match slot == ray.left && is_sphere {
             _ if passed => R::of(NO_HIT),

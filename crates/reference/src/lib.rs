@@ -26,6 +26,7 @@ pub mod isosurface;
 pub mod least_squares;
 pub mod levels;
 pub mod light;
+mod light_passes;
 pub mod media;
 pub mod optics;
 pub mod point_light;

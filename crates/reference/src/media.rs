@@ -112,10 +112,13 @@ pub fn ior_of(medium: Option<u32>, objects: &[ObjectInfo]) -> [f32; 3] {
 }
 
 impl Crossing {
-    /// Whether it leaves the medium as it is.
+    /// Whether a ray of these channels goes through as if there were nothing: the medium stays, or has the same index.
     #[must_use]
-    pub fn passes(&self) -> bool {
-        self.before == self.after
+    pub fn passes(&self, channels: u32, objects: &[ObjectInfo]) -> bool {
+        let [before, after] = [self.before, self.after].map(|medium| ior_of(medium, objects));
+        let bent =
+            |channel: usize| channels >> channel & 1 != 0 && before[channel] != after[channel];
+        self.before == self.after || !(0..3).any(bent)
     }
 
     /// Whether a ray becomes one a channel here.
@@ -141,7 +144,13 @@ mod tests {
     use bytemuck::Zeroable;
 
     fn objects(priorities: [i32; 3]) -> Vec<ObjectInfo> {
-        priorities.map(|priority| ObjectInfo { priority, ..ObjectInfo::zeroed() }).to_vec()
+        // No two of one index.
+        let glass = |at: usize| ObjectInfo {
+            priority: priorities[at],
+            ior: [1.1 + 0.1 * at as f32; 3],
+            ..ObjectInfo::zeroed()
+        };
+        [0, 1, 2].map(glass).to_vec()
     }
 
     /// A ball (0) half under water (1): under water the ball's surface counts, and inside the ball the
@@ -155,7 +164,7 @@ mod tests {
         let both = water.toggled(0);
         assert_eq!(both.medium(&objects), Some(0));
         assert!(
-            both.crossing(1, Way::Either, &objects).passes(),
+            both.crossing(1, Way::Either, &objects).passes(CHANNELS_ALL, &objects),
             "the water's surface inside the ball"
         );
         let ball = both.toggled(1);
@@ -170,7 +179,7 @@ mod tests {
         let objects = objects([0, 0, 0]);
         let media = Media::default().toggled(2).toggled(0);
         assert_eq!(media.medium(&objects), Some(2));
-        assert!(media.crossing(1, Way::Either, &objects).passes());
+        assert!(media.crossing(1, Way::Either, &objects).passes(CHANNELS_ALL, &objects));
         assert_eq!(media.toggled(2).crossing(1, Way::Either, &objects).after, Some(1));
     }
 
@@ -187,7 +196,7 @@ mod tests {
         });
         let [first, second, third, last] = crossings;
         assert_eq!(first, Crossing { before: None, after: Some(1) });
-        assert!(second.passes() && third.passes());
+        assert!(second.passes(CHANNELS_ALL, &objects) && third.passes(CHANNELS_ALL, &objects));
         assert_eq!(last, Crossing { before: Some(1), after: None });
         assert!(media.is_empty());
         assert!(media.through(1, Way::Out).is_empty(), "out of what it was never in");
@@ -198,5 +207,18 @@ mod tests {
         let full = (0..20).fold(Media::default(), |media, object| media.toggled(object));
         assert_eq!(full.0.len(), MOST_MEDIA);
         assert_eq!(full.toggled(3).0.len(), MOST_MEDIA - 1);
+    }
+
+    /// Glass of index 1 in air, and glass in glass of its index; by channel, where only some agree.
+    #[test]
+    fn media_of_one_index_have_no_surface_between_them() {
+        let mut objects = objects([0, 1, 2]);
+        (objects[0].ior, objects[1].ior, objects[2].ior) = ([1.0; 3], [1.5; 3], [1.5, 1.5, 1.6]);
+        let passes =
+            |before, after, channels| Crossing { before, after }.passes(channels, &objects);
+        assert!(passes(None, Some(0), CHANNELS_ALL) && !passes(None, Some(1), CHANNELS_ALL));
+        assert!(!passes(Some(1), Some(2), CHANNELS_ALL));
+        assert!(passes(Some(1), Some(2), 1) && passes(Some(2), Some(1), 2));
+        assert!(!passes(Some(1), Some(2), 4));
     }
 }

@@ -6,6 +6,7 @@ use crate::grid_trace::grid_trace;
 use crate::isosurface::blocks;
 use crate::levels::Levels;
 use crate::light::sample_light;
+use crate::light_passes::light_through;
 use crate::media::Media;
 use crate::real::{Real, V3};
 use crate::volume::{march, may_be_seen};
@@ -46,8 +47,25 @@ pub fn point_lights<R: Real>(
                 for (of_light, light) in of.iter_mut().zip(&plan.lights) {
                     let sample = sample_light(light, x, [R::of(0.5); 2]);
                     let mut ray = Ray::new(x, sample.towards, &levels, NONE);
-                    ray.passed = info.object;
+                    ray.passed = plan.passed_of(info.object);
                     ray.hit_t = sample.distance;
+                    if plan.light_passes {
+                        let all = V3::splat(R::of(1.0));
+                        let scene = (plan, &levels);
+                        let [r, g, b] = light_through(
+                            reference,
+                            scene,
+                            ray,
+                            all,
+                            media.clone(),
+                            ray.passed,
+                            |_| {},
+                        )
+                        .0;
+                        let is_grey = r == g && g == b;
+                        *of_light = if is_grey { r } else { ((r + g) + b) / R::of(3.0) };
+                        continue;
+                    }
                     grid_trace(&mut ray, &levels, &reference.lists, &reference.polynomials, true);
                     if ray.hit_slot == NONE && !blocks(&ray, ray.hit_t, volumes) {
                         let march = march(&ray, ray.hit_t, &media, volumes, &plan.objects, None);

@@ -12,6 +12,7 @@ use crate::environment::background_at;
 use crate::grid_trace::grid_trace;
 use crate::isosurface::{blocks, isosurface};
 use crate::levels::Levels;
+use crate::light_passes::light_through;
 use crate::media::{Media, Way, ior_of, transmittance};
 use crate::optics::{reflected, refraction};
 use crate::real::{NO_HIT, Real, V3};
@@ -259,6 +260,13 @@ impl<R: Real> PixelTrace<'_, R> {
                 continue;
             };
             self.rays.shadow += 1;
+            if self.plan.light_passes {
+                let (reference, scene) = (self.reference, (self.plan, self.levels));
+                let account = |ray: &Ray<R>| self.account(ray, None, 0, false);
+                irradiance = irradiance
+                    + light_through(reference, scene, ray, arriving, media.clone(), NONE, account);
+                continue;
+            }
             self.trace(&mut ray, true);
             self.account(&ray, None, 0, false);
             if ray.hit_slot == NONE && !blocks(&ray, ray.hit_t, &self.plan.volumes) {
@@ -297,8 +305,9 @@ impl<R: Real> PixelTrace<'_, R> {
         };
         let crossing =
             (info.material == MATERIAL_GLASS).then(|| path.media.crossing(object, way, objects));
-        let passes = crossing.is_some_and(|crossing| crossing.passes());
-        let splits = crossing.is_some_and(|crossing| crossing.splits(path.channels, objects));
+        let passes = crossing.is_some_and(|crossing| crossing.passes(path.channels, objects));
+        let splits =
+            !passes && crossing.is_some_and(|crossing| crossing.splits(path.channels, objects));
         let goes_on = if passes {
             path.crossings < MOST_CROSSINGS
         } else {
@@ -314,6 +323,7 @@ impl<R: Real> PixelTrace<'_, R> {
             let (reflects, direction) = match crossing {
                 None => (true, reflected(d, n)),
                 Some(_) if passes => (false, d),
+                Some(crossing) if crossing.passes(channels, objects) => (false, d),
                 Some(crossing) => {
                     let channel = channels.trailing_zeros() as usize;
                     let [n1, n2] = [crossing.before, crossing.after]

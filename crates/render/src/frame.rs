@@ -8,6 +8,7 @@
 mod ahead;
 mod first_wave;
 mod in_volumes;
+mod to_light;
 mod to_the_end;
 
 use crate::RenderError;
@@ -15,8 +16,8 @@ use crate::budget::Budget;
 use crate::discs::{DiscLists, Discs};
 use crate::passes::{
     AlbedoIo, CameraRays, CameraTrace, Classify, ClassifyIo, DiscTrace, GridTrace, Isosurface,
-    ListMarked, March, Marks, PointLight, Refine, Scatter, ScatterIo, Shade, ShadeIo, ShadowRays,
-    ShadowRaysIo, SurfaceHit, TreeTrace,
+    LightPasses, ListMarked, March, Marks, PointLight, Refine, Scatter, ScatterIo, Shade, ShadeIo,
+    ShadowRays, ShadowRaysIo, SurfaceHit, TreeTrace,
 };
 use crate::samples::Samples;
 use crate::state::{RayLoop, RayState};
@@ -147,6 +148,7 @@ struct Passes {
     classify: Classify,
     shadow_rays: ShadowRays,
     shade: Shade,
+    light_passes: LightPasses,
     scatter: Scatter,
     march: March,
     isosurface: Isosurface,
@@ -173,6 +175,7 @@ impl Passes {
             classify: Classify::new(device, form, scene)?,
             shadow_rays: ShadowRays::new(device, form, scene)?,
             shade: Shade::new(device, form, scene)?,
+            light_passes: LightPasses::new(device, form, scene)?,
             scatter: Scatter::new(device, form, scene)?,
             march: March::new(device, form)?,
             isosurface: Isosurface::new(device, form)?,
@@ -262,7 +265,7 @@ impl Renderer {
             live: Buffer::new(device, "live rays", 8)?,
             live_marks: Marks::new(device, rays, false)?,
             live_rays: [live_rays()?, live_rays()?],
-            wave: WaveBuffers::new(device, rays, plan.scatters())?,
+            wave: WaveBuffers::new(device, rays, plan.scatters(), plan.light_passes)?,
             volumes: VolumeBuffers::new(device, &plan.volumes, rays)?,
             state: RayState::new(device, rays, form, plan.scatters())?,
             form,
@@ -494,9 +497,8 @@ impl Renderer {
             let params = WaveParams { light, ..*params };
             self.passes.shadow_rays.record(&mut self.recorder, io, &params);
             self.shadows.passed();
-            self.trace_to_the_end(plan, [params.ray_count; 2], Traced::Shadows, stats, watch)?;
-            self.isosurfaces(plan, params.ray_count, true, stats, watch)?;
-            self.march(plan, params.ray_count, (true, None), stats, watch)?;
+            self.record_shadow_media(plan, &params, &paths);
+            self.send_to_light(plan, params.ray_count, Traced::Shadows, stats, watch)?;
         }
         let io = ShadeIo {
             shadows: &self.shadows.current,

@@ -22,16 +22,27 @@ pub(crate) struct WaveBuffers {
     /// Of the rays of the next wave.
     pub next: Marks,
     light_sums: Buffer,
+    /// Of shadow rays, where light passes surfaces.
+    shadow_paths: Buffer,
+    /// The number of each of them.
+    every_ray: Buffer,
     tally: Buffer,
 }
 
 impl WaveBuffers {
     /// For so many rays. Where no surface `scatters` there is no next wave.
-    pub fn new(device: &Arc<Device>, rays: u32, scatters: bool) -> Result<Self, GpuError> {
+    pub fn new(
+        device: &Arc<Device>,
+        rays: u32,
+        scatters: bool,
+        light_passes: bool,
+    ) -> Result<Self, GpuError> {
         let of = |name, count: u32, size: usize| {
             Buffer::new(device, name, u64::from(count) * size as u64)
         };
         let next = if scatters { rays } else { 1 };
+        let passing = if light_passes { rays } else { 1 };
+        let every_ray: Vec<u32> = (0..passing).collect();
         Ok(Self {
             paths: [
                 of("paths", rays, size_of::<Path>())?,
@@ -44,6 +55,8 @@ impl WaveBuffers {
             scattering_rays: of("list of scattering rays", next, 4)?,
             next: Marks::new(device, next, true)?,
             light_sums: of("light sums", rays, size_of::<LightSum>())?,
+            shadow_paths: of("shadow paths", passing, size_of::<Path>())?,
+            every_ray: Buffer::from_slice(device, "list of shadow rays", &every_ray)?,
             tally: of("tally of rays", TALLIED as u32, 4)?,
         })
     }
@@ -76,6 +89,20 @@ impl WaveBuffers {
     /// One a diffuse hit.
     pub fn light_sums(&self) -> &Buffer {
         &self.light_sums
+    }
+
+    /// Where the media of shadow rays are, and the list of their places among them: the paths of the wave, or, where light
+    /// passes surfaces, which changes them, their own.
+    pub fn shadow_media(&self, light_passes: bool) -> [&Buffer; 2] {
+        match light_passes {
+            false => [self.paths(), &self.lit_rays],
+            true => [&self.shadow_paths, &self.every_ray],
+        }
+    }
+
+    /// What shadow rays are inside, where light passes surfaces.
+    pub fn shadow_paths(&self) -> &Buffer {
+        &self.shadow_paths
     }
 
     /// Hits that sent no ray to a light, and reflected rays.

@@ -758,7 +758,9 @@ pub(crate) static MATERIAL: Table = Table {
                 Kind::Vector(numbers(0.1, 10.0, "")),
             ]),
             Value("1.5"),
-            "Glass: refractive index, one number or one for each of red, green and blue.",
+            "Glass: refractive index, one number or one for each of red, green and blue. Where it is that of the \
+             medium around, 1 for air, the surface is not seen and light passes it; any other throws a black \
+             shadow.",
         ),
         key(
             "abbe",

@@ -171,7 +171,7 @@ pub struct ImageFile {
     pub as_written: String,
 }
 
-/// A light. Every surface blocks it fully.
+/// A light. Every surface blocks it fully, but for those between media of one index.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
     /// Light from infinitely far away.

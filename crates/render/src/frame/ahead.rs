@@ -66,9 +66,15 @@ impl Renderer {
         if is_lit {
             likely.extend([passes.shadow_rays.kernel, passes.shade.kernel]);
         }
+        if is_lit && plan.light_passes {
+            likely.push(passes.light_passes.media);
+        }
         let points_lit = plan.volumes.any_lit() && !plan.lights.is_empty();
         if points_lit {
             likely.extend([passes.point_light.rays, passes.point_light.lights]);
+        }
+        if (is_lit || points_lit) && plan.light_passes {
+            likely.extend([passes.light_passes.meet, passes.light_passes.go_on]);
         }
         if (is_lit || scatters || points_lit) && plan.by_tree() {
             likely.push(passes.tree_trace.leaving);

@@ -23,17 +23,15 @@ impl Renderer {
             return Ok(());
         };
         let lights = plan.volumes.any_lit().then_some(&self.lights);
+        let [shadow_paths, lit_rays] = self.wave.shadow_media(plan.light_passes);
         let io = MarchIo {
             state: if shadows { &self.shadows.current } else { &self.state.current },
             volumes,
-            paths: self.wave.paths(),
+            paths: if shadows { shadow_paths } else { self.wave.paths() },
             live: &self.live,
             marched: match shadows {
                 false => Marched::Wave { hits: &self.hits, objects: &self.objects, lights },
-                true => Marched::Shadows {
-                    lit_rays: self.wave.lit_rays(),
-                    light_sums: self.wave.light_sums(),
-                },
+                true => Marched::Shadows { lit_rays, light_sums: self.wave.light_sums() },
             },
         };
         let bytes = |size: usize| u64::from(ray_count) * size as u64;
@@ -132,27 +130,27 @@ impl Renderer {
         stats: &mut FrameStats,
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
-        self.record_point_light(params, true);
+        self.record_point_light(plan, params, true);
         self.shadows.passed();
-        let traced = Traced::PastObject(plan.volumes.infos[params.volume as usize].object);
-        self.trace_to_the_end(plan, [params.count; 2], traced, stats, watch)?;
-        self.isosurfaces(plan, params.count, true, stats, watch)?;
-        self.march(plan, params.count, (true, None), stats, watch)?;
-        self.record_point_light(params, false);
+        let object = plan.volumes.infos[params.volume as usize].object;
+        let traced = Traced::PastObject(plan.passed_of(object));
+        self.send_to_light(plan, params.count, traced, stats, watch)?;
+        self.record_point_light(plan, params, false);
         stats.add_kernels(&self.recorder.submit()?.passes);
         Ok(())
     }
 
     /// The rays from points to a light, or, once they have ended, what came of them.
-    fn record_point_light(&mut self, params: &PointLightParams, starts: bool) {
+    fn record_point_light(&mut self, plan: &Plan, params: &PointLightParams, starts: bool) {
         let Some(volumes) = &self.volumes else { return };
+        let [paths, lit_rays] = self.wave.shadow_media(plan.light_passes);
         let io = PointLightIo {
             shadows: &self.shadows,
             volumes,
             grid_levels: &self.surfaces.grid_levels,
             lights: &self.lights,
-            paths: self.wave.paths(),
-            lit_rays: self.wave.lit_rays(),
+            paths,
+            lit_rays,
             light_sums: self.wave.light_sums(),
         };
         let (pass, rec) = (&self.passes.point_light, &mut self.recorder);

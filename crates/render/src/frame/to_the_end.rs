@@ -22,7 +22,7 @@ impl Renderer {
         watch: &dyn Watch,
     ) -> Result<(), RenderError> {
         let cells = if plan.cells_per_pass == 0 { u32::MAX } else { plan.cells_per_pass };
-        let any_hit = u32::from(traced.to_light());
+        let any_hit = u32::from(traced.to_light() && !plan.light_passes);
         let passed = match traced {
             Traced::PastObject(object) => object,
             _ => NONE,
@@ -169,7 +169,10 @@ impl Renderer {
     }
 
     /// Runs what is recorded, and reads the two counters.
-    fn submit_and_count(&mut self, stats: &mut FrameStats) -> Result<[u32; 2], RenderError> {
+    pub(super) fn submit_and_count(
+        &mut self,
+        stats: &mut FrameStats,
+    ) -> Result<[u32; 2], RenderError> {
         stats.add_kernels(&self.recorder.submit()?.passes);
         let mut counts = [0; 2];
         self.live.read(0, &mut counts)?;

@@ -1,0 +1,83 @@
+//! Surfaces between media of one index, which light passes (docs/method.md, section 6).
+
+use crate::Plan;
+use kernels::layout::{MATERIAL_GLASS, ObjectInfo, PASSED_NEAR};
+use points::{Cloud, Shapes};
+
+/// Of the diagonal of an object's points: how far its surface may reach beyond their box.
+const MARGIN: f64 = 0.05;
+
+/// Whether a channel of both has one index.
+fn share_an_index(a: [f32; 3], b: [f32; 3]) -> bool {
+    (0..3).any(|channel| a[channel] == b[channel])
+}
+
+fn is_glass(object: &ObjectInfo) -> bool {
+    object.material == MATERIAL_GLASS
+}
+
+/// Whether glass may meet a medium of its own index anywhere.
+fn may_be_clear(objects: &[ObjectInfo]) -> bool {
+    let glass: Vec<[f32; 3]> =
+        objects.iter().filter(|object| is_glass(object)).map(|object| object.ior).collect();
+    (glass.iter().enumerate()).any(|(i, &ior)| {
+        share_an_index(ior, [1.0; 3]) || glass[..i].iter().any(|&other| share_an_index(ior, other))
+    })
+}
+
+/// Whether glass borders on air of its own index, or may on other glass of its own index: where their boxes meet.
+pub(crate) fn lets_light_pass(objects: &[ObjectInfo], cloud: &Cloud, shapes: &[Shapes]) -> bool {
+    let glass: Vec<usize> = (0..objects.len()).filter(|&at| is_glass(&objects[at])).collect();
+    if glass.iter().any(|&at| share_an_index(objects[at].ior, [1.0; 3])) {
+        return true;
+    }
+    if !may_be_clear(objects) {
+        return false;
+    }
+    let boxes: Vec<[[f64; 3]; 2]> = glass.iter().map(|&at| box_of(at, cloud, shapes)).collect();
+    let meet = |a: &[[f64; 3]; 2], b: &[[f64; 3]; 2]| {
+        (0..3).all(|axis| a[0][axis] <= b[1][axis] && b[0][axis] <= a[1][axis])
+    };
+    (0..glass.len()).any(|i| {
+        (0..i).any(|j| {
+            let [a, b] = [i, j].map(|at| objects[glass[at]].ior);
+            share_an_index(a, b) && meet(&boxes[i], &boxes[j])
+        })
+    })
+}
+
+/// The box that holds an object's surface; without points, which isosurfaces have none of, it may be anywhere.
+fn box_of(object: usize, cloud: &Cloud, shapes: &[Shapes]) -> [[f64; 3]; 2] {
+    let points = &cloud.points[cloud.objects[object].range()];
+    if points.is_empty() {
+        return [[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]];
+    }
+    let own = shapes.iter().filter(|shapes| shapes.object as usize == object);
+    let radius = own.flat_map(|shapes| &shapes.radii).fold(0.0f32, |most, &r| most.max(r));
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for point in points {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(f64::from(point.position[axis]));
+            high[axis] = high[axis].max(f64::from(point.position[axis]));
+        }
+    }
+    let diagonal: f64 = (0..3).map(|axis| (high[axis] - low[axis]).powi(2)).sum::<f64>().sqrt();
+    let margin = MARGIN * diagonal + f64::from(radius);
+    [low.map(|x| x - margin), high.map(|x| x + margin)]
+}
+
+impl Plan {
+    /// Whether glass may meet a medium of its own index.
+    pub(crate) fn may_be_clear(&self) -> bool {
+        may_be_clear(&self.objects)
+    }
+
+    /// What light for the points of an object's volume passes, as kernels take it: the object's own surface, or, where
+    /// light can pass it as other surfaces, what of it is near the point that asks.
+    #[must_use]
+    pub fn passed_of(&self, object: u32) -> u32 {
+        let own = &self.objects[object as usize];
+        let clear = self.light_passes && is_glass(own) && share_an_index(own.ior, [1.0; 3]);
+        if clear { object | PASSED_NEAR } else { object }
+    }
+}

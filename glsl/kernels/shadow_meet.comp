@@ -1,0 +1,58 @@
+// shadow_meet: what the surfaces that shadow rays have met do to light, where it may pass some.
+//
+// reads   the shadow rays' state      ended at their nearest hits, or at the light
+//         shadow_paths, objects, polynomials
+// writes  light_sums       what the media on the way leave of the light, by channel
+//         the shadow rays' state      of rays that a surface between equal media lets through: no hit, so that
+//                          isosurfaces and volumes as far as that surface count
+//         shadow_paths     that surface
+// runs    one invocation per shadow ray
+// twin    crates/reference/src/light_passes.rs
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define STATE_READS
+#define STATE_WRITES
+#include "layout.glsl"
+#include "math.glsl"
+#include "state.glsl"
+#include "records.glsl"
+#include "index.glsl"
+
+layout(local_size_x = LINE_GROUP) in;
+layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
+layout(std430, binding = SHADOW_PATHS) buffer ShadowPaths { Path shadow_paths[]; };
+layout(push_constant) uniform Push { ShadowParams params; };
+
+uint media_word(uint ray, uint word) {
+    return shadow_paths[ray].media[word];
+}
+#include "media.glsl"
+#include "way.glsl"
+
+void main() {
+    uint at = list_index();
+    if (at >= params.ray_count) return;
+    vec3 arriving = light_sums[at].arriving;
+    if (shadow_paths[at].bounces != 0u || !any(greaterThan(arriving, vec3(0.0)))) return;
+    Ray ray = load_ray(at);
+    Media media = Media(at, shadow_paths[at].media_count);
+    uint medium = medium_without(media, NONE);
+    // The volume's own object, whose surface is not there: where its glass ends is not known.
+    medium = medium == params.passed ? NONE : medium;
+    arriving *= transmittance(medium, ray.hit_t);
+    bool found = ray.hit_slot != NONE;
+    uint object = found ? object_of(ray.hit_slot) : 0u;
+    bool is_glass = found && object_at(object).material == MATERIAL_GLASS;
+    bool passes = false;
+    if (is_glass) {
+        Crossing crossing = crossing_of(media, object, way_through_point(ray.hit_slot, ray.origin, ray.direction, ray.hit_t));
+        bvec3 equal_indices = equal(ior_of(crossing.before), ior_of(crossing.after));
+        passes = any(equal_indices) && shadow_paths[at].crossings < uint(MOST_CROSSINGS);
+        arriving = mix(vec3(0.0), arriving, equal_indices);
+    }
+    if (found && !passes) return;
+    light_sums[at].arriving = arriving;
+    shadow_paths[at].channels = ray.hit_slot;
+    ray.hit_slot = NONE;
+    store_ray(at, ray);
+}
