@@ -1,26 +1,10 @@
 //! Points that fill a space and carry a scalar: what volumes are shown with.
 
 use crate::noise::random;
-use crate::ply::Points;
-use crate::solid::Solid;
 use crate::vector::{Vector, length};
 use crate::{figure, implicit};
-
-/// A point of the box, the same for the same number.
-fn random_point(low: Vector, high: Vector, number: u32) -> Vector {
-    [0, 1, 2].map(|axis| {
-        let part = random(f64::from(number), 1000.0 + axis as f64);
-        low[axis] + part * (high[axis] - low[axis])
-    })
-}
-
-/// Smooth, from -1 to 1, with whirls of several sizes.
-fn whirls([x, y, z]: Vector) -> f64 {
-    let wave = |k: f64, p: f64| {
-        ((k * x + p).sin() + (k * y + 2.0 * p + (k * z).cos()).sin() + (k * z - p).cos()) / 3.0
-    };
-    0.6 * wave(3.1, 0.3) + 0.3 * wave(6.7, 1.9) + 0.1 * wave(13.0, 4.0)
-}
+use points::PlyPoints as Points;
+use points::fill::{random_point, whirls};
 
 #[expect(clippy::cast_possible_truncation, reason = "rounding to float is meant")]
 fn rounded(values: impl Iterator<Item = f64>) -> Vec<f32> {
@@ -61,43 +45,6 @@ pub fn filled_hare(count: u32) -> Points {
         attributes: vec![("density", densities), ("skin", rounded(skin))],
         ..Points::default()
     }
-}
-
-/// Points of a surface, and `count` inside of it; `None` where nothing is inside. `reach` is half the width of
-/// holes that are closed, over the longest side of the points' box.
-#[must_use]
-pub fn filled(surface: &[Vector], count: u32, reach: f64) -> Option<Points> {
-    let bound = |axis: usize| {
-        let along = || surface.iter().map(|p| p[axis]);
-        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
-    };
-    let longest = (0..3).map(bound).fold(0.0, f64::max);
-    if !(longest > 0.0 && longest.is_finite()) {
-        return None;
-    }
-    let solid = Solid::new(surface, reach * longest);
-    // A box of which less than a ten-thousandth is inside holds none.
-    let tries = count.saturating_mul(10_000);
-    let inside: Vec<(Vector, f64)> = (0..tries)
-        .map(|number| random_point(solid.low, solid.high, number))
-        .filter_map(|p| Some((p, solid.depth(p)?)))
-        .take(count as usize)
-        .collect();
-    if inside.len() < count as usize {
-        return None;
-    }
-    let deepest = inside.iter().map(|&(_, depth)| depth).fold(0.0, f64::max);
-    let depths =
-        surface.iter().map(|_| 0.0).chain(inside.iter().map(|&(_, depth)| depth / deepest));
-    let depths = rounded(depths);
-    let positions: Vec<Vector> =
-        surface.iter().copied().chain(inside.iter().map(|&(p, _)| p)).collect();
-    let place = |p: &Vector| [0, 1, 2].map(|a| 4.0 * (p[a] - solid.low[a]) / longest);
-    let density = rounded(positions.iter().map(|p| 0.5 + 0.5 * whirls(place(p))));
-    let boundary = (0..positions.len()).map(|i| f64::from(u8::from(i < surface.len())));
-    let boundary = rounded(boundary);
-    let attributes = vec![("boundary", boundary), ("depth", depths), ("density", density)];
-    Some(Points { positions, attributes, ..Points::default() })
 }
 
 /// Nodes of a grid that is stretched towards its axis: a jet along z that swirls and mixes, with its `density`.

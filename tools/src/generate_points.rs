@@ -8,7 +8,6 @@
 
 use clap::Parser;
 use pointillist_tools::files::{self, WriteError};
-use pointillist_tools::ply;
 use pointillist_tools::sets::{self, Set};
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -49,5 +48,5 @@ fn run(arguments: &Arguments) -> Result<(), WriteError> {
     }
     let (Some(set), Some(path)) = (arguments.name, &arguments.output) else { return Ok(()) };
     let count = arguments.count.unwrap_or(set.usual_count());
-    files::write(path, &ply::encode(&set.comment(), &set.points(count)))
+    files::write(path, &points::encode_ply(&set.comment(), &set.points(count)))
 }

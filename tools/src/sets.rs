@@ -1,10 +1,10 @@
 //! The sets that can be generated: one row each.
 
 use crate::color::{oklch, srgb_bytes};
-use crate::ply::Points;
 use crate::vector::{Vector, scale};
 use crate::{figure, filling, implicit, room, sphere, terrain, tube};
 use clap::ValueEnum;
+use points::PlyPoints as Points;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
@@ -147,7 +147,7 @@ pub fn listing() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ply::encode;
+    use points::encode_ply as encode;
     use std::path::Path;
 
     /// The committed files, byte for byte up to the platform's sine and cosine: one unit in the last

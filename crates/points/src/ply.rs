@@ -12,6 +12,9 @@
 
 mod header;
 mod splat;
+mod write;
+
+pub use write::{PlyPoints, encode_ply};
 
 use crate::collect::Collector;
 use crate::color;

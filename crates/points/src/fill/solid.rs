@@ -1,10 +1,10 @@
-//! The inside of a surface that is known by its points alone, holes and all.
+//! The inside a surface that is known only by its points, holes and all.
 //!
 //! Morphology on a lattice of cells: walls are what is nearer than `reach` to a point, so holes up to twice as
 //! wide are closed; what cannot be reached from outside of all walls, and is farther than `reach` from what can,
 //! is inside. Distances are exact (Felzenszwalb and Huttenlocher, Distance Transforms of Sampled Functions, 2012).
 
-use crate::vector::Vector;
+use crate::fill::Vector;
 
 /// Cells along the longest side of the box.
 const CELLS: f64 = 144.0;
@@ -25,7 +25,6 @@ impl Lattice {
     }
 
     fn cell_of(&self, p: Vector) -> usize {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
         let at = [0, 1, 2].map(|axis| {
             let cell = ((p[axis] - self.low[axis]) / self.edge).max(0.0) as usize;
             cell.min(self.sides[axis] - 1)
@@ -82,7 +81,6 @@ impl Lattice {
 }
 
 /// min over j of line[j] + (i − j)², for each i.
-#[expect(clippy::cast_precision_loss, reason = "a line is short")]
 fn lower_envelope(line: &[f64]) -> Vec<f64> {
     let crossing = |a: usize, b: usize| {
         let (fa, fb) = (line[a] + (a * a) as f64, line[b] + (b * b) as f64);
@@ -111,7 +109,7 @@ fn lower_envelope(line: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// How deep places are inside of a surface.
+/// How deep places are inside a surface.
 #[derive(Debug)]
 pub struct Solid {
     /// Lowest corner of the points' box.
@@ -134,11 +132,6 @@ impl Solid {
         let longest = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
         let edge = longest / CELLS;
         let border = reach + 3.0 * edge;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "some hundreds"
-        )]
         let sides =
             [0, 1, 2].map(|a| ((high[a] - low[a] + 2.0 * border) / edge).ceil() as usize + 1);
         let mut to_points = Lattice {
@@ -172,7 +165,22 @@ impl Solid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sphere::fibonacci;
+    use crate::fill::random;
+
+    fn length(p: Vector) -> f64 {
+        p.iter().map(|x| x * x).sum::<f64>().sqrt()
+    }
+
+    /// Even points of the unit sphere.
+    fn fibonacci(count: u32) -> Vec<Vector> {
+        let point = |i: u32| {
+            let y = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
+            let (sin, cos) = (f64::from(i) * 2.399_963_229_728_653).sin_cos();
+            let radius = (1.0 - y * y).sqrt();
+            [radius * cos, y, radius * sin]
+        };
+        (0..count).map(point).collect()
+    }
 
     /// A ball with a hole of 0.3: inside is inside, to two cells, and the depth is the distance to the sphere.
     #[test]
@@ -180,9 +188,8 @@ mod tests {
         let open: Vec<Vector> = fibonacci(20_000).into_iter().filter(|p| p[1] > -0.988).collect();
         let solid = Solid::new(&open, 0.2);
         for i in 0..1000 {
-            let p = [0, 1, 2]
-                .map(|axis| 2.4 * crate::noise::random(f64::from(i), f64::from(axis)) - 1.2);
-            let radius = crate::vector::length(p);
+            let p = [0, 1, 2].map(|axis| 2.4 * random(f64::from(i), f64::from(axis)) - 1.2);
+            let radius = length(p);
             if (radius - 1.0).abs() > 0.04 && p[1] > -0.9 {
                 assert_eq!(solid.depth(p).is_some(), radius < 1.0, "{p:?}");
             }
