@@ -312,7 +312,7 @@ impl Plan {
         Ok(Self {
             fits,
             shapes,
-            grid_resolution: scene.render.grid_resolution,
+            grid_resolution: scene.render.grid_resolution.cells(bulk.point_count),
             cells_per_pass: scene.render.cells_per_pass,
             ray_loop: scene.render.ray_loop,
             primary: scene.render.primary,

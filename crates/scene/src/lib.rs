@@ -16,7 +16,9 @@ mod load;
 mod models;
 mod not_built;
 mod overrides;
+mod preset;
 mod read;
+mod root;
 mod scene;
 mod schema;
 mod settings;
@@ -36,11 +38,11 @@ pub use error::SceneError;
 pub use models::MODELS_VARIABLE;
 pub use scene::{
     Albedo, Background, Boundary, Camera, ColorMap, ExtinctionFactor, FeatureSize, Filter, Fresnel,
-    ImageFile, ImageSettings, Light, Material, MaterialKind, Neighbors, Normals, Object,
-    PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, Primary, Projection, RadiusOf,
-    RayLoop, Refine, RenderSettings, Scale, Scatter, Scene, Secondary, ShapeRadius, Stop, Surface,
-    SurfaceKind, TextureAxis, Transfer, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
-    VoxelEdge,
+    GridResolution, ImageFile, ImageSettings, Light, Material, MaterialKind, Neighbors, Normals,
+    Object, PerParticle, PointColumn, PointColumns, PointFilter, Polynomial, Primary, Projection,
+    RadiusOf, RayLoop, Refine, RenderSettings, Scale, Scatter, Scene, Secondary, ShapeRadius, Stop,
+    Surface, SurfaceKind, TextureAxis, Transfer, Units, Up, Volume, VolumeKernel, VolumeMode,
+    VolumeShading, VoxelEdge,
 };
 pub use schema::{json_schema, suite_json_schema};
 pub use suite::{Shape, SimulatedScan, Suite, SuiteRow};

@@ -5,13 +5,14 @@ use crate::error::{Problem, Source};
 use crate::keys::{self, SCENE};
 use crate::models::{self, MODELS_VARIABLE};
 use crate::read::{Reader, to_number, to_vector};
+use crate::root;
 use crate::{
     Albedo, Background, Boundary, CameraKeys, ColorMap, ExtinctionFactor, FeatureSize, Filter,
-    Fresnel, ImageFile, ImageSettings, Light, Material, MaterialKind, Neighbors, Normals, Object,
-    PerParticle, PointFilter, Polynomial, Primary, RadiusOf, RayLoop, Refine, RenderSettings,
-    Scale, Scatter, Scene, SceneError, Secondary, ShapeRadius, Stop, Surface, SurfaceKind,
-    TextureAxis, Transfer, Transform, Units, Up, Volume, VolumeKernel, VolumeMode, VolumeShading,
-    VoxelEdge,
+    Fresnel, GridResolution, ImageFile, ImageSettings, Light, Material, MaterialKind, Neighbors,
+    Normals, Object, PerParticle, PointFilter, Polynomial, Primary, RadiusOf, RayLoop, Refine,
+    RenderSettings, Scale, Scatter, Scene, SceneError, Secondary, ShapeRadius, Stop, Surface,
+    SurfaceKind, TextureAxis, Transfer, Transform, Units, Up, Volume, VolumeKernel, VolumeMode,
+    VolumeShading, VoxelEdge,
 };
 use std::env;
 use std::fs::{self, File};
@@ -27,17 +28,63 @@ impl Scene {
     /// (`objects.0.surface.trust=0.7`), applied in order before the checks; paths in them too
     /// start from the scene file's folder.
     pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
-        let text = &read_text(path)?;
-        let (document, mut scene) = parse(text, path, overrides)?;
+        Self::load_below(path, overrides, None)
+    }
+
+    /// The same where the files that the scene names are looked for below `root` first: there as they are written, or
+    /// without their first folders, those with absolute paths too.
+    ///
+    /// # Errors
+    /// As [`Scene::load`]; every file that is missing is named, with all places where it was looked for.
+    pub fn load_below(
+        path: &Path,
+        overrides: &[String],
+        root: Option<&Path>,
+    ) -> Result<Scene, SceneError> {
+        let text = read_text(path)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let source = Source { file: path, text: &text, overrides };
+        Self::with_files(&source, folder, root, false)
+    }
+
+    /// The scene that `picture` holds in its header as `text`, whose relative paths start from the picture's folder, or
+    /// from `root` as in [`Scene::load_below`].
+    ///
+    /// # Errors
+    /// As [`Scene::load_below`].
+    pub fn of_picture(
+        text: &str,
+        picture: &Path,
+        overrides: &[String],
+        root: Option<&Path>,
+    ) -> Result<Scene, SceneError> {
+        let mut shown = picture.as_os_str().to_owned();
+        shown.push("[pointillist/scene]");
+        let folder = picture.parent().unwrap_or(Path::new(""));
+        let source = Source { file: Path::new(&shown), text, overrides };
+        Self::with_files(&source, folder, root, true)
+    }
+
+    fn with_files(
+        source: &Source<'_>,
+        folder: &Path,
+        root: Option<&Path>,
+        of_picture: bool,
+    ) -> Result<Scene, SceneError> {
+        let mut document = document_of(source.text, source.file)?;
+        let mut scene = checked(&mut document, folder, root, source)?;
         models::find(&mut scene, models_folder().as_deref());
-        files_exist(&document, &scene, &Source { file: path, text, overrides })?;
+        root::find(&mut scene, root);
+        files_exist(&document, &scene, source, (root, of_picture))?;
         Ok(scene)
     }
 
     /// Checks scene text as if it were read from `file`, which names it in messages and whose
     /// folder relative paths start from. Opens no file but those of transfer functions.
     pub fn from_toml(text: &str, file: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
-        parse(text, file, overrides).map(|(_, scene)| scene)
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let mut document = document_of(text, file)?;
+        checked(&mut document, folder, None, &Source { file, text, overrides })
     }
 
     /// The scene that a point file rendered directly means: one object with defaults, no camera
@@ -69,7 +116,7 @@ impl Scene {
     fn around(points: &Path, key: [f64; 3], overrides: &[String]) -> Result<Scene, SceneError> {
         let source = Source { file: points, text: "", overrides };
         let mut document = point_file_document(points, key);
-        let mut scene = checked(&mut document, Path::new(""), &source)?;
+        let mut scene = checked(&mut document, Path::new(""), None, &source)?;
         models::find(&mut scene, models_folder().as_deref());
         let key_light = document.get("lights").and_then(|list| list.items().first());
         let direction = key_light.and_then(|light| light.get("direction"));
@@ -81,7 +128,7 @@ impl Scene {
         {
             object.points = points.to_path_buf();
         }
-        files_exist(&document, &scene, &source)?;
+        files_exist(&document, &scene, &source, (None, false))?;
         Ok(scene)
     }
 }
@@ -131,21 +178,20 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-fn parse(text: &str, file: &Path, overrides: &[String]) -> Result<(Node, Scene), SceneError> {
-    let mut document = document_of(text, file)?;
-    let folder = file.parent().unwrap_or(Path::new(""));
-    let scene = checked(&mut document, folder, &Source { file, text, overrides })?;
-    Ok((document, scene))
-}
-
 /// Overrides, then checks, then the scene.
-fn checked(document: &mut Node, folder: &Path, source: &Source<'_>) -> Result<Scene, SceneError> {
+fn checked(
+    document: &mut Node,
+    folder: &Path,
+    root: Option<&Path>,
+    source: &Source<'_>,
+) -> Result<Scene, SceneError> {
     let mut problems = Vec::new();
     for (index, text) in source.overrides.iter().enumerate() {
         problems.extend(crate::overrides::apply(document, index, text).err());
     }
+    crate::preset::apply(document);
     // What is wrong in a file of its own comes first: the scene is right if that is.
-    problems.extend(crate::transfer_file::insert(document, folder)?);
+    problems.extend(crate::transfer_file::insert(document, folder, root)?);
     problems.extend(crate::check::check(document));
     if !problems.is_empty() {
         return Err(SceneError::problems(problems, source));
@@ -163,14 +209,24 @@ fn models_folder() -> Option<PathBuf> {
 }
 
 /// Every file that the scene names is there: point files and images.
-fn files_exist(document: &Node, scene: &Scene, source: &Source<'_>) -> Result<(), SceneError> {
+fn files_exist(
+    document: &Node,
+    scene: &Scene,
+    source: &Source<'_>,
+    (root, of_picture): (Option<&Path>, bool),
+) -> Result<(), SceneError> {
     let nodes = document.get("objects").map_or(&[][..], Node::items);
     let mut problems = Vec::new();
     let models = models_folder();
     let mut require = |file: &Path, written: &str, what: &str, origin: Origin, path: String| {
         // A point file rendered directly is looked for where it says, and named by the message already.
         let given = origin == Origin::Given;
-        let advice = if given { None } else { models::advice(written, models.as_deref()) };
+        let advice = match (given, root) {
+            (true, _) => None,
+            (false, None) => models::advice(written, models.as_deref())
+                .or_else(|| root::advice(None, written, of_picture)),
+            (false, _) => root::advice(root, written, of_picture),
+        };
         // What the user names may be a pipe; what a scene names is read more than once.
         let is_pipe = || file.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir());
         let Some(message) = what_is_missing(file, what, advice).filter(|_| !given || !is_pipe())
@@ -303,7 +359,10 @@ impl RenderSettings {
                 _ => RayLoop::Auto,
             },
             seed: table.count("seed"),
-            grid_resolution: table.count("grid_resolution"),
+            grid_resolution: match to_number(&table.value("grid_resolution")) {
+                Some(_) => GridResolution::Cells(table.count("grid_resolution")),
+                None => GridResolution::Paper,
+            },
             primary: match table.text("primary").as_str() {
                 "grid" => Primary::Grid,
                 "discs" => Primary::Discs,

@@ -33,6 +33,16 @@ pub(crate) fn find(scene: &mut Scene, models: Option<&Path>) {
     scene.background.environment.as_mut().map(locate_image);
 }
 
+/// Where a model is that a path names, relative to a folder or below the folder of [`MODELS_VARIABLE`], if anywhere.
+pub(crate) fn model(folder: &Path, written: &str) -> Option<PathBuf> {
+    let beside = folder.join(written);
+    if beside.is_file() {
+        return Some(beside);
+    }
+    let models = std::env::var_os(MODELS_VARIABLE).filter(|folder| !folder.is_empty())?;
+    found(Path::new(&models), below_models(written)?)
+}
+
 /// What to do about a file that is missing, if it is one of the models.
 pub(crate) fn advice(written: &str, models: Option<&Path>) -> Option<String> {
     let rest = below_models(written)?.display();

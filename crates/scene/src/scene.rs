@@ -99,12 +99,35 @@ pub struct RenderSettings {
     pub ray_loop: RayLoop,
     /// Seed of everything that is random.
     pub seed: u32,
-    /// Cells along the grid's longest axis, 1 to 1024; 0 is chosen from the points.
-    pub grid_resolution: u32,
+    /// How many cells a grid has.
+    pub grid_resolution: GridResolution,
     /// How camera rays find their first hit. Changes no pixel.
     pub primary: Primary,
     /// How all other rays find theirs. Changes no pixel.
     pub secondary: Secondary,
+}
+
+/// How many cells a grid has along its longest axis. Changes no pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GridResolution {
+    /// So many, 1 to 1024; 0 chooses grids from the points.
+    Cells(u32),
+    /// As many as the paper has: about 20³ for 35 000 points.
+    Paper,
+}
+
+impl GridResolution {
+    /// Cells along the longest axis of a scene of so many points; 0 leaves it to the size of trust balls.
+    #[must_use]
+    pub fn cells(self, points: u64) -> u32 {
+        match self {
+            Self::Cells(cells) => cells,
+            // The share of points a cell stays: twice as many points have twice as many cells.
+            Self::Paper => {
+                (20.0 * (points as f64 / 35_000.0).cbrt()).round().clamp(1.0, 1024.0) as u32
+            }
+        }
+    }
 }
 
 /// What glass does with a ray that it both reflects and refracts.

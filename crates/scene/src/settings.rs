@@ -1,10 +1,11 @@
 //! A scene as canonical TOML, for the header of the pictures it makes.
 
 use crate::{
-    Albedo, Boundary, ExtinctionFactor, FeatureSize, Filter, Fresnel, Light, Material,
-    MaterialKind, Neighbors, Normals, Object, PerParticle, PointColumn, PointColumns, PointFilter,
-    Polynomial, RadiusOf, Refine, RenderSettings, Scatter, Scene, Surface, SurfaceKind,
-    TextureAxis, Transfer, Units, Volume, VolumeKernel, VolumeMode, VolumeShading, VoxelEdge,
+    Albedo, Boundary, ExtinctionFactor, FeatureSize, Filter, Fresnel, GridResolution, Light,
+    Material, MaterialKind, Neighbors, Normals, Object, PerParticle, PointColumn, PointColumns,
+    PointFilter, Polynomial, RadiusOf, Refine, RenderSettings, Scatter, Scene, Surface,
+    SurfaceKind, TextureAxis, Transfer, Units, Volume, VolumeKernel, VolumeMode, VolumeShading,
+    VoxelEdge,
 };
 use std::fmt::{self, Write};
 
@@ -62,7 +63,10 @@ fn write_render(out: &mut String, render: &RenderSettings) -> fmt::Result {
     writeln!(out, "max_bounces = {}", render.max_bounces)?;
     writeln!(out, "fresnel = \"{fresnel}\"")?;
     writeln!(out, "seed = {}", render.seed)?;
-    writeln!(out, "grid_resolution = {}\n", render.grid_resolution)
+    match render.grid_resolution {
+        GridResolution::Cells(cells) => writeln!(out, "grid_resolution = {cells}\n"),
+        GridResolution::Paper => writeln!(out, "grid_resolution = \"paper\"\n"),
+    }
 }
 
 fn write_light(out: &mut String, light: &Light) -> fmt::Result {

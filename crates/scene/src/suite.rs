@@ -41,6 +41,8 @@ pub struct SuiteRow {
     pub point_counts: Vec<u32>,
     /// A scan to be made instead of the points of the first object.
     pub scan: Option<SimulatedScan>,
+    /// Points of a surface that are filled where the first object's are missing: where they are, if anywhere.
+    pub fill: Option<PathBuf>,
     /// An earlier row, over whose planning and building that of this one is stated.
     pub over: Option<String>,
     /// Milliseconds a frame that the paper states.
@@ -134,6 +136,7 @@ fn row_of(row: &Reader<'_>, folder: &Path) -> SuiteRow {
             "tls10" => SimulatedScan::Tls10,
             _ => SimulatedScan::Photo,
         }),
+        fill: text("fill").and_then(|written| crate::models::model(folder, &written)),
         over: text("over"),
         paper_ms: row.written("paper_ms").map(|_| row.number("paper_ms")),
         if_missing: text("if_missing"),

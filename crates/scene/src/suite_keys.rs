@@ -81,6 +81,13 @@ pub(crate) static ROWS: Table = Table {
              depth camera, by a laser scanner with noise of 1, 3 or 10 ‰ of the distance, or by photogrammetry.",
         ),
         key(
+            "fill",
+            Kind::Text("the path of a point file"),
+            Words("the scene's own points", "\"../models/bunny.ply\""),
+            "The points of a surface, relative to the suite's folder: where the first object's points are missing, these \
+             are filled instead, as `pointillist fill` does, and kept in the cache folder.",
+        ),
+        key(
             "over",
             Kind::Text("the name of an earlier row"),
             Words("none", "\"tls3, 16 neighbours\""),

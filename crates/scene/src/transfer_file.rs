@@ -6,11 +6,16 @@ use crate::document::{Node, Value};
 use crate::error::{Problem, Source};
 use crate::keys::TRANSFER_FILE;
 use crate::load::{document_of, read_text, what_is_missing};
+use crate::root;
 use std::path::Path;
 
 /// Puts the stops of every file that a volume names as its `transfer` in the name's place. Fails at the
 /// first file that is no transfer function; says which are missing.
-pub(crate) fn insert(document: &mut Node, folder: &Path) -> Result<Vec<Problem>, SceneError> {
+pub(crate) fn insert(
+    document: &mut Node,
+    folder: &Path,
+    root: Option<&Path>,
+) -> Result<Vec<Problem>, SceneError> {
     let mut problems = Vec::new();
     let Some(Value::List(objects)) = document.get_mut("objects").map(|node| &mut node.value) else {
         return Ok(problems);
@@ -19,8 +24,9 @@ pub(crate) fn insert(document: &mut Node, folder: &Path) -> Result<Vec<Problem>,
         let written = object.get_mut("volume").and_then(|volume| volume.get_mut("transfer"));
         let Some(node) = written else { continue };
         let Value::Text(name) = &node.value else { continue };
-        let file = folder.join(name);
-        if let Some(message) = what_is_missing(&file, "a file of a transfer function", None) {
+        let file = root::located(root, name).unwrap_or_else(|| folder.join(name));
+        let advice = root::advice(root, name, false);
+        if let Some(message) = what_is_missing(&file, "a file of a transfer function", advice) {
             let path = format!("objects[{index}].volume.transfer");
             problems.push(Problem { origin: node.origin, path, message });
         } else {

@@ -32,7 +32,7 @@ fn every_built_key_is_read() {
         cells_per_pass: 4,
         ray_loop: RayLoop::Images,
         seed: u32::MAX,
-        grid_resolution: 96,
+        grid_resolution: GridResolution::Cells(96),
         primary: Primary::Discs,
         secondary: Secondary::Tree,
     };
@@ -214,7 +214,7 @@ fn what_is_left_out_is_the_contracts_default() {
     assert_eq!(scene.image, image);
     assert_eq!((scene.render.max_bounces, scene.render.fresnel), (8, Fresnel::Transmit));
     assert_eq!((scene.render.cells_per_pass, scene.render.ray_loop), (0, RayLoop::Auto));
-    assert_eq!((scene.render.seed, scene.render.grid_resolution), (0, 0));
+    assert_eq!((scene.render.seed, scene.render.grid_resolution), (0, GridResolution::Cells(0)));
     assert_eq!(scene.render.primary, Primary::Auto);
     assert_eq!(scene.render.secondary, Secondary::Auto);
     assert_eq!((scene.background.color, scene.lights.len()), ([0.0; 3], 0));

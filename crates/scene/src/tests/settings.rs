@@ -57,6 +57,8 @@ fn settings_state_every_built_key() {
         let stated = settings.lines().any(is_stated);
         // Four change no picture; the Abbe number is in the indices.
         let unseen = [
+            // What it stands for is stated.
+            "render.preset",
             "render.cells_per_pass",
             "render.loop",
             "render.primary",
