@@ -32,6 +32,8 @@ pub enum Command {
     Check(CheckArgs),
     /// Print the JSON Schema of scene files, of suites, or of what `bench` writes
     Schema(SchemaArgs),
+    /// Fill a surface with points that carry scalars, for volumes
+    Fill(FillArgs),
     /// List the Vulkan devices, and say which is the default and why
     Devices,
     /// Say how far two pictures are apart, and whether that is too far
@@ -40,7 +42,8 @@ pub enum Command {
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// Scene file (.toml), or a point file; then camera, light and material are chosen
+    /// Scene file (.toml), a picture (.exr) whose header has the scene that it was made from, or a point file; then
+    /// camera, light and material are chosen
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
     /// Picture to write: .exr, .png or .jpg; may be given several times
@@ -49,10 +52,11 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub overrides: Overrides,
     /// Rays a pixel
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = parse_samples, allow_hyphen_values = true)]
     pub samples: Option<u32>,
-    /// Render only a part of the picture
-    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop)]
+    /// Render only a part of the picture: column and row of its upper left pixel, from 0, then its width and height in
+    /// pixels. (Points in a box are chosen by --set objects.0.filter.box)
+    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop, allow_hyphen_values = true)]
     pub crop: Option<plan::Window>,
     /// Brighten PNG and JPEG files by so many stops, each a factor of two; EXR files hold the numbers
     /// as they are
@@ -152,6 +156,12 @@ pub struct InfoArgs {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+    /// Print the scene that an EXR holds in its header, as a scene file
+    #[arg(long, conflicts_with = "json")]
+    pub scene: bool,
+    /// Folder that the scene's files are in now: paths are looked for below it, as written or by their last parts
+    #[arg(long, value_name = "FOLDER")]
+    pub root: Option<PathBuf>,
     /// What the columns of a point file are, from the first on, with commas between: x,y,z,_,red,green,blue;
     /// _ passes a column over
     #[arg(long, value_name = "LIST", value_parser = points::Columns::in_order)]
@@ -183,9 +193,11 @@ pub struct CompareArgs {
     /// Largest root mean square of a - b that any of these channels may have, in the channel's unit
     #[arg(long, value_name = "X", value_parser = parse_limit)]
     pub rmse: Option<f64>,
-    /// Largest mean FLIP of R, G and B, 0 to 1: HDR-FLIP, or LDR-FLIP where one is PNG or JPEG
-    #[arg(long, value_name = "X", value_parser = parse_limit)]
-    pub flip: Option<f64>,
+    /// Compute FLIP of R, G and B of pictures of any size: HDR-FLIP, or LDR-FLIP where one is PNG or JPEG; with X, the
+    /// largest mean that it may have, 0 to 1. Without this option, FLIP is computed of pictures of up to 2 megapixels
+    /// (2^21 pixels), and of equal ones, where it is 0
+    #[arg(long, value_name = "X", num_args = 0..=1, value_parser = parse_flip)]
+    pub flip: Option<Option<f64>>,
     /// List the attributes that differ in the headers of two EXR files; one that differs is over a
     /// limit
     #[arg(long)]
@@ -195,7 +207,7 @@ pub struct CompareArgs {
     /// else the largest there is; .exr, b - a of each channel and FLIP; may be given several times
     #[arg(long = "diff", value_name = "OUT")]
     pub diffs: Vec<PathBuf>,
-    /// Leave FLIP out, which takes longest
+    /// Leave FLIP out, whatever the size
     #[arg(long, conflicts_with = "flip")]
     pub no_flip: bool,
     /// Print one JSON object
@@ -204,12 +216,46 @@ pub struct CompareArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(
+    after_help = "The points of the surface come first, as they are, then those inside. `boundary` is 1 on the \
+    surface and 0 inside, `depth` 0 on the surface and 1 at the deepest point, `density` whirls from 0 to 1. The same \
+    file gives the same points on every machine. Coordinates are 32-bit floats, or 64-bit where these would move \
+    points by a millionth of their extent. Exit codes: 0 done, 2 no usable input or nothing inside, 4 the machine ran \
+    out, 130 interrupted."
+)]
+pub struct FillArgs {
+    /// Point file of a surface, in any format that is read
+    pub input: PathBuf,
+    /// PLY file to write
+    #[arg(short, long, value_name = "OUT.ply")]
+    pub output: PathBuf,
+    /// Points inside
+    #[arg(long, value_name = "N", default_value_t = 40_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pub count: u32,
+    /// Half the width of the widest hole that is closed, over the longest side of the points' box
+    #[arg(long, value_name = "PART", default_value_t = 0.06, value_parser = parse_reach, allow_negative_numbers = true)]
+    pub reach: f64,
+    /// What the columns of a point file are, from the first on, with commas between: x,y,z,_,red,green,blue;
+    /// _ passes a column over
+    #[arg(long, value_name = "LIST", value_parser = points::Columns::in_order)]
+    pub columns: Option<points::Columns>,
+    #[command(flatten)]
+    pub progress: ProgressArgs,
+}
+
+#[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Scene file, or a point file
+    /// Scene file, a picture (.exr) with the scene that it was made from, or a point file
     pub scene: PathBuf,
     /// Override one value of the scene, e.g. objects.0.surface.trust=0.7
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub set: Vec<String>,
+    /// Other defaults beneath what the scene says: paper renders by the paper's own method
+    #[arg(long, value_name = "NAME")]
+    pub preset: Option<String>,
+    /// Folder that the scene's files are in now: paths are looked for below it, as written or by their last parts
+    #[arg(long, value_name = "FOLDER")]
+    pub root: Option<PathBuf>,
     #[command(flatten)]
     pub view: ViewArgs,
     #[command(flatten)]
@@ -236,7 +282,7 @@ pub struct ViewArgs {
 }
 
 /// Options that stand for values of the scene.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct Overrides {
     /// Width and height of the picture in pixels
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
@@ -247,6 +293,12 @@ pub struct Overrides {
     /// Cells a ray may cross in one pass: 0 lets the device decide, 1 is the paper's loop
     #[arg(long, value_name = "K")]
     pub cells_per_pass: Option<u32>,
+    /// Other defaults beneath what the scene says: paper renders by the paper's own method
+    #[arg(long, value_name = "NAME")]
+    pub preset: Option<String>,
+    /// Folder that the scene's files are in now: paths are looked for below it, as written or by their last parts
+    #[arg(long, value_name = "FOLDER")]
+    pub root: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -301,6 +353,13 @@ impl BenchArgs {
     /// What is to be timed.
     pub fn asked(&self) -> Vec<PathBuf> {
         if self.scenes.is_empty() { vec!["smoke".into()] } else { self.scenes.clone() }
+    }
+}
+
+impl CompareArgs {
+    /// The largest mean FLIP, where `--flip` gives one.
+    pub fn flip_limit(&self) -> Option<f64> {
+        self.flip.flatten()
     }
 }
 
@@ -361,11 +420,20 @@ fn view_parser() -> impl TypedValueParser<Value = ViewFrom> {
 }
 
 fn parse_size(text: &str) -> Result<Size, String> {
-    let numbers: Option<Vec<u32>> = text.split(['x', 'X']).map(|part| part.parse().ok()).collect();
-    match numbers.as_deref() {
-        Some(&[width, height]) => Ok(Size(width, height)),
-        _ => Err("expected WxH, two whole numbers, e.g. 640x480".to_owned()),
+    const EXPECTED: &str = "expected WxH, two whole numbers of pixels, e.g. 640x480";
+    let numbers = |separators: &[char]| -> Option<Vec<u32>> {
+        text.split(separators).map(|part| part.trim().parse().ok()).collect()
+    };
+    if text.chars().all(|c| c.is_ascii_digit() || "xX".contains(c))
+        && let Some([width, height]) = numbers(&['x', 'X']).as_deref()
+    {
+        return Ok(Size(*width, *height));
     }
+    Err(match numbers(&[',', 'x', 'X', '*', ' ', '\u{d7}']).as_deref() {
+        Some([width, height]) => format!("{EXPECTED}; write {width}x{height}"),
+        Some([_]) => format!("{EXPECTED}; found a width without a height"),
+        _ => EXPECTED.to_owned(),
+    })
 }
 
 fn parse_stops(text: &str) -> Result<f64, String> {
@@ -382,6 +450,13 @@ fn parse_percent(text: &str) -> Result<f64, String> {
     }
 }
 
+fn parse_reach(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(reach) if reach > 0.0 && reach <= 0.5 => Ok(reach),
+        _ => Err("expected a number of more than 0 and at most 0.5, e.g. 0.06".to_owned()),
+    }
+}
+
 fn parse_limit(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(limit) if (0.0..f64::INFINITY).contains(&limit) => Ok(limit),
@@ -389,11 +464,43 @@ fn parse_limit(text: &str) -> Result<f64, String> {
     }
 }
 
+fn parse_flip(text: &str) -> Result<f64, String> {
+    parse_limit(text).map_err(|error| {
+        format!("{error}; without a limit, --flip stands behind the names of both pictures")
+    })
+}
+
+/// Largest coordinate that anybody means in pixels: pictures have 16384 on a side at most.
+const FARTHEST_PIXEL: f64 = 65_536.0;
+
 fn parse_crop(text: &str) -> Result<plan::Window, String> {
-    let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some(&[x, y, width, height]) => Ok(plan::Window { origin: [x, y], size: [width, height] }),
-        _ => Err("expected X,Y,W,H, four whole numbers, e.g. 100,50,320,240".to_owned()),
+    const EXPECTED: &str = "expected X,Y,W,H, four whole numbers of pixels, e.g. 100,50,320,240";
+    let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    let Some(numbers) = numbers.filter(|numbers| numbers.iter().all(|x| x.is_finite())) else {
+        return Err(EXPECTED.to_owned());
+    };
+    let whole = |x: &f64| x.fract() == 0.0 && x.abs() <= FARTHEST_PIXEL;
+    // Two corners, decimals or northings: a box in the coordinates of a file is meant.
+    if numbers.len() == 6 || !numbers.iter().all(whole) {
+        return Err(format!(
+            "{EXPECTED}; --crop is in pixels of the picture. To render only the points in a box of the file's \
+             coordinates, use filter.box: --set 'objects.0.filter.box={{ min = [X, Y, Z], max = [X, Y, Z] }}'"
+        ));
+    }
+    let [x, y, width, height] = numbers[..] else { return Err(EXPECTED.to_owned()) };
+    if numbers.iter().any(|x| *x < 0.0) {
+        return Err(format!(
+            "found a number below 0; the crop lies inside the picture, whose upper left pixel is 0,0; {EXPECTED}"
+        ));
+    }
+    let pixels = |x: f64| x as u32;
+    Ok(plan::Window { origin: [x, y].map(pixels), size: [width, height].map(pixels) })
+}
+
+fn parse_samples(text: &str) -> Result<u32, String> {
+    match text.trim().parse() {
+        Ok(samples) if samples > 0 => Ok(samples),
+        _ => Err("expected a whole number of rays a pixel, at least 1, e.g. 16".to_owned()),
     }
 }
 
@@ -415,8 +522,26 @@ mod tests {
         }
         let window = plan::Window { origin: [1, 2], size: [3, 4] };
         assert_eq!(parse_crop("1,2,3,4"), Ok(window));
-        for wrong in ["1,2,3", "1,2,3,4,5", "a,2,3,4", ""] {
-            assert!(parse_crop(wrong).is_err(), "{wrong}");
+        for wrong in ["1,2,3", "1,2,3,4,5", "a,2,3,4", "", "nan,0,1,1", "inf,0,1,1"] {
+            let error = parse_crop(wrong).expect_err(wrong);
+            assert!(error.contains("X,Y,W,H"), "{error}");
+        }
+        for negative in ["-1,0,5,5", "0,-3,5,5", "0,0,5,-5"] {
+            let error = parse_crop(negative).expect_err(negative);
+            assert!(error.contains("inside the picture") && error.contains("0,0"), "{error}");
+        }
+        for of_file in ["0.5,0,5,5", "500000,4000000,100,100", "1,2,3,4,5,6", "-1.5,-2.5,3.5,4.5"] {
+            let error = parse_crop(of_file).expect_err(of_file);
+            assert!(error.contains("objects.0.filter.box") && error.contains("pixels"), "{error}");
+        }
+        for (wrong, word) in [("640,480", "write 640x480"), ("640", "without a height")] {
+            let error = parse_size(wrong).expect_err(wrong);
+            assert!(error.contains(word), "{error}");
+        }
+        assert_eq!(parse_samples("16"), Ok(16));
+        for wrong in ["1.5", "0", "-3", "many", ""] {
+            let error = parse_samples(wrong).expect_err(wrong);
+            assert!(error.contains("whole number") && error.contains("at least 1"), "{error}");
         }
         assert_eq!(parse_limit("1e-3"), Ok(0.001));
         for wrong in ["", "-1", "nan", "inf", "1e999", "0,5"] {

@@ -37,12 +37,27 @@ pub struct Input {
 pub struct SceneValues {
     /// `PATH=VALUE`, and the option as typed where it was not `--set`.
     entries: Vec<(String, Option<String>)>,
+    /// Where the files of a scene are looked for first.
+    root: Option<PathBuf>,
 }
 
 impl SceneValues {
     /// `--set` alone.
     pub fn set(set: &[String]) -> Self {
-        Self { entries: set.iter().map(|entry| (entry.clone(), None)).collect() }
+        Self { entries: set.iter().map(|entry| (entry.clone(), None)).collect(), root: None }
+    }
+
+    /// With `--root`.
+    pub fn below(mut self, root: Option<&Path>) -> Self {
+        self.root = root.map(Path::to_path_buf).or(self.root);
+        self
+    }
+
+    /// With `--preset`, which is one more value of the scene.
+    pub fn add_preset(&mut self, preset: Option<&str>) {
+        if let Some(name) = preset {
+            self.add("render.preset", &json!(name).to_string(), &format!("--preset {name}"));
+        }
     }
 
     /// `--set`, `--size` and `--cells-per-pass`.
@@ -55,6 +70,10 @@ impl SceneValues {
     /// The same over what there is already.
     pub fn append(&mut self, overrides: &Overrides) {
         self.entries.extend(Self::set(&overrides.set).entries);
+        self.add_preset(overrides.preset.as_deref());
+        if let Some(root) = &overrides.root {
+            self.root = Some(root.clone());
+        }
         if let Some(size) = overrides.size {
             self.add(
                 "image.size",
@@ -118,9 +137,48 @@ pub fn columns_of_scene(path: &Path) -> Failure {
     ))
 }
 
-/// Whether a path is a scene file's rather than a point file's.
+/// Whether a path is that of a scene, in a file of its own or in the header of a picture, rather than a point file's.
 pub fn is_scene_file(path: &Path) -> bool {
+    is_toml(path) || is_exr(path)
+}
+
+/// Whether a path is a scene file's.
+pub fn is_toml(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+}
+
+/// Whether a path is that of an EXR, whose header has the scene that it was made from.
+fn is_exr(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"))
+}
+
+/// The scene that an EXR holds in its header, as TOML.
+pub fn scene_of_picture(path: &Path) -> Result<String, Failure> {
+    film::exr_text(path, "pointillist/scene")?.ok_or_else(|| {
+        Failure::usage(format!(
+            "{}: found no scene in its header, which pictures by pointillist have as pointillist/scene; name one of \
+             these, a scene file or a point file",
+            path.display()
+        ))
+    })
+}
+
+/// `--root` is for scenes, and a folder.
+fn check_root(root: Option<&Path>, path: &Path) -> Result<(), Failure> {
+    let Some(root) = root else { return Ok(()) };
+    if !is_scene_file(path) {
+        return Err(Failure::usage(format!(
+            "{}: --root says where the files of a scene are, but this is a point file; leave it out",
+            path.display()
+        )));
+    }
+    if !root.is_dir() {
+        return Err(Failure::usage(format!(
+            "--root {}: found no such folder, expected the one that the scene's files are in; check the path",
+            root.display()
+        )));
+    }
+    Ok(())
 }
 
 impl Input {
@@ -129,8 +187,12 @@ impl Input {
         let set = values.as_set();
         let options = CameraOptions::new(view, &set)?;
         let turned = options.up.map_or(Up::Y, Up::from);
-        let loaded = if is_scene_file(path) {
-            Scene::load(path, &set)
+        let root = values.root.as_deref();
+        check_root(root, path)?;
+        let loaded = if is_exr(path) {
+            Scene::of_picture(&scene_of_picture(path)?, path, &set, root)
+        } else if is_scene_file(path) {
+            Scene::load_below(path, &set, root)
         } else {
             Scene::for_point_file(path, turned, &set)
         };

@@ -35,6 +35,8 @@ pub struct Row {
     pub build_ms: Spread,
     /// Planning and building over that of another row, where the suite asks for it.
     pub prepared_over: Option<PreparedOver>,
+    /// What a preset costs and changes, where `bench --preset` asks for it.
+    pub beside: Option<Beside>,
     /// How many builds that is of. Where there are several, the first is not among them.
     pub builds: u32,
     /// The same on the CPU with a k-d tree, neighbours and fits alone; where `bench --cpu-preparation` asks for it.
@@ -121,6 +123,41 @@ pub struct PreparedOver {
     pub name: String,
     /// Medians of planning and of building together, over those of that row.
     pub ratio: f64,
+}
+
+/// A row with a preset beside the same without.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Beside {
+    /// The row without.
+    pub name: String,
+    /// Median of tracing over that of the other row.
+    pub trace_ratio: f64,
+    /// Median of building over that of the other row.
+    pub build_ratio: f64,
+    /// Mean FLIP of both pictures, the other row's taken as the reference: 0 to 1.
+    pub flip: f64,
+    /// Share of pixels whose R, G, B or A differ by any bit.
+    pub differing: f64,
+}
+
+impl Beside {
+    /// Of a row and another with their pictures, which have one size.
+    pub fn new((row, film): (&Row, &Film), (other, reference): (&Row, &Film)) -> Self {
+        let colors = |film: &Film| -> Vec<[f32; 3]> {
+            film.color.iter().map(|&[r, g, b, _]| [r, g, b]).collect()
+        };
+        let size = [film.window.width as usize, film.window.height as usize];
+        let bits = |pixel: &[f32; 4]| pixel.map(f32::to_bits);
+        let pairs = film.color.iter().zip(&reference.color);
+        let differing = pairs.filter(|(a, b)| bits(a) != bits(b)).count();
+        Self {
+            name: other.name.clone(),
+            trace_ratio: row.trace_ms.median / other.trace_ms.median,
+            build_ratio: row.build_ms.median / other.build_ms.median,
+            flip: compare::Flip::hdr(&colors(reference), &colors(film), size).mean,
+            differing: differing as f64 / film.color.len() as f64,
+        }
+    }
 }
 
 /// Rays by kind.
@@ -257,6 +294,7 @@ impl Row {
             gpu_ms: frame.gpu_ms().map(|ms| Spread { median: ms, min: ms, max: ms }),
             build_ms: Spread::of(&[built.duration]),
             prepared_over: None,
+            beside: None,
             builds: 1,
             cpu_preparation_ms: None,
             build_kernels: built.kernels().iter().copied().collect(),

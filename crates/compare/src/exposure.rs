@@ -1,6 +1,8 @@
 //! The exposures at which HDR-FLIP looks at two pictures, and what it sees: Andersson et al. 2021, cited
 //! as [H] in [`flip`](crate::flip_ldr)'s module.
 
+use rayon::prelude::*;
+
 /// Luminances below are taken for this, as in the authors' program: its median of black is not 0.
 const DARKEST: f32 = f32::EPSILON;
 /// The tone curve's value that bounds the exposures, [H] Section 3.
@@ -48,7 +50,7 @@ impl Exposures {
 
 fn luminances(pixels: &[[f32; 3]]) -> Vec<f32> {
     let luminance = |[r, g, b]: &[f32; 3]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
-    pixels.iter().map(luminance).filter(|luminance| luminance.is_finite()).collect()
+    pixels.par_iter().map(luminance).filter(|luminance| luminance.is_finite()).collect()
 }
 
 /// Where the tone curve is [`BOUND`]: the larger root of a quadratic.
@@ -58,17 +60,23 @@ fn almost_white() -> f64 {
     half + (half * half - c / a).sqrt()
 }
 
-/// What a linear value becomes on the screen, still linear, 0 to 1. Negative values are black.
-pub(crate) fn tone_mapped(c: f32, stops: f64) -> f32 {
+/// What a linear value times an exposure's factor becomes on the screen, still linear, 0 to 1. Negative values are
+/// black.
+#[inline(always)]
+pub(crate) fn tone_mapped_by(c: f32, factor: f64) -> f32 {
     // f64 holds the square of any f32 at any of the exposures; what is infinite is white.
-    let x = (f64::from(c).max(0.0) * stops.exp2()).min(1e100);
-    let curve = CURVE.map(|[square, linear, constant]| (square * x + linear) * x + constant);
-    (curve[0] / curve[1]).clamp(0.0, 1.0) as f32
+    let x = (f64::from(c).max(0.0) * factor).min(1e100);
+    let [[a, b, c], [d, e, f]] = CURVE;
+    (((a * x + b) * x + c) / ((d * x + e) * x + f)).clamp(0.0, 1.0) as f32
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn tone_mapped(c: f32, stops: f64) -> f32 {
+        tone_mapped_by(c, stops.exp2())
+    }
 
     #[test]
     fn the_bound_is_a_value_of_the_curve() {

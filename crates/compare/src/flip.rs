@@ -7,10 +7,10 @@
 //! of the authors' own program. That program and the crates that wrap it need a C++ compiler, and those
 //! know 8-bit pictures only; so the method is here in Rust.
 
-use crate::convolve::{Grid, Kernel, balanced, sampled};
-use crate::exposure::{Exposures, tone_mapped};
+use crate::exposure::Exposures;
+use crate::lanes::{cube_root, power};
 use crate::measure::percentiles;
-use rayon::prelude::*;
+use crate::tiles::{Kernel, Shown, flip_map};
 use std::f64::consts::PI;
 
 /// Of a screen 0.7 m and 3840 pixels wide, seen from 0.7 m: the observer of both papers.
@@ -36,10 +36,7 @@ impl Flip {
     /// Of linear colours as a screen shows them: cut at 0 and 1.
     #[must_use]
     pub fn ldr(reference: &[[f32; 3]], test: &[[f32; 3]], size: [usize; 2]) -> Self {
-        let [a, b] = [reference, test].map(|pixels| -> Vec<[f32; 3]> {
-            pixels.iter().map(|pixel| pixel.map(|c| finite(c).clamp(0.0, 1.0))).collect()
-        });
-        Self::from_map(flip_ldr(&a, &b, size), None, reference, test)
+        Self::from_map(flip_ldr(reference, test, size), None, reference, test)
     }
 
     /// Of linear colours of any range, [H]: the largest FLIP of each pixel over a series of exposures,
@@ -47,16 +44,9 @@ impl Flip {
     #[must_use]
     pub fn hdr(reference: &[[f32; 3]], test: &[[f32; 3]], size: [usize; 2]) -> Self {
         let exposures = Exposures::of(reference, test);
-        let mut map = vec![0.0f32; reference.len()];
-        for stops in exposures.stops() {
-            let [a, b] = [reference, test].map(|pixels| -> Vec<[f32; 3]> {
-                let shown = |pixel: &[f32; 3]| pixel.map(|c| tone_mapped(finite(c), stops));
-                pixels.par_iter().map(shown).collect()
-            });
-            for (most, value) in map.iter_mut().zip(flip_ldr(&a, &b, size)) {
-                *most = most.max(value);
-            }
-        }
+        let shown: Vec<Shown> = exposures.stops().map(Shown::ToneMapped).collect();
+        let filters = Filters::new(PIXELS_PER_DEGREE);
+        let map = flip_map([reference, test], size, &filters, &shown);
         let series = (exposures.range, exposures.count);
         Self::from_map(map, Some(series), reference, test)
     }
@@ -80,61 +70,36 @@ impl Flip {
     }
 }
 
-/// What is no number is shown black.
-fn finite(c: f32) -> f32 {
-    if c.is_nan() { 0.0 } else { c }
-}
-
 /// FLIP of each pixel, [F]: of linear Rec. 709 colours within 0..=1, row by row, `size` columns and rows.
 ///
 /// # Panics
 /// If there are not as many colours as pixels, or none.
 #[must_use]
 pub fn flip_ldr(reference: &[[f32; 3]], test: &[[f32; 3]], size: [usize; 2]) -> Vec<f32> {
-    let filters = Filters::new(PIXELS_PER_DEGREE);
-    let [reference, test] =
-        [reference, test].map(|pixels| Opponent::of(pixels, size).seen(&filters));
-    let largest = largest_color_difference();
-    (0..size[0] * size[1])
-        .into_par_iter()
-        .map(|at| {
-            let color = color_error(&reference.lab[at], &test.lab[at], largest);
-            let edge = (reference.edges[at] - test.edges[at]).abs();
-            let point = (reference.points[at] - test.points[at]).abs();
-            // [F] Eqs. 5 and 6: features make a difference of colours more visible.
-            let feature = (edge.max(point) / std::f32::consts::SQRT_2).sqrt();
-            color.powf(1.0 - feature)
-        })
-        .collect()
-}
-
-/// A picture in Y, Cx, Cz: one channel of brightness, two of colour, linear in the colours of the picture.
-struct Opponent([Grid; 3]);
-
-/// What is left of a picture for an observer.
-struct Seen {
-    /// L\*a\*b\* with Hunt's adjustment.
-    lab: Vec<[f32; 3]>,
-    /// How strong edges are, 0 to √2.
-    edges: Vec<f32>,
-    /// How strong points are.
-    points: Vec<f32>,
+    flip_map([reference, test], size, &Filters::new(PIXELS_PER_DEGREE), &[Shown::Cut])
 }
 
 /// Filters of an observer.
-struct Filters {
+pub(crate) struct Filters {
     /// What the eye cannot resolve: brightness, red against green.
-    brightness: Kernel,
-    red_green: Kernel,
+    pub(crate) brightness: Kernel,
+    pub(crate) red_green: Kernel,
     /// Blue against yellow, the sum of two with these shares.
-    blue_yellow: [(f32, Kernel); 2],
+    pub(crate) blue_yellow: [(f32, Kernel); 2],
     /// A Gaussian as wide as edges that are seen, and its first and second derivatives.
-    smooth: Kernel,
-    first: Kernel,
-    second: Kernel,
+    pub(crate) smooth: Kernel,
+    pub(crate) first: Kernel,
+    pub(crate) second: Kernel,
 }
 
 impl Filters {
+    /// How far any of them reaches from its middle.
+    pub(crate) fn reach(&self) -> usize {
+        let kernels = [&self.brightness, &self.red_green, &self.smooth, &self.first, &self.second];
+        let widest = kernels.into_iter().chain(self.blue_yellow.iter().map(|(_, kernel)| kernel));
+        widest.map(|kernel| kernel.len() / 2).max().unwrap_or(0)
+    }
+
     /// [F] Sections 4.1.1 and 4.2.
     fn new(pixels_per_degree: f64) -> Self {
         // Amplitude and width of the Gaussians of the contrast sensitivity functions, [F] Table 1.
@@ -168,68 +133,48 @@ impl Filters {
     }
 }
 
-impl Opponent {
-    fn of(pixels: &[[f32; 3]], size: [usize; 2]) -> Self {
-        let converted: Vec<[f32; 3]> = pixels.par_iter().map(|&rgb| ycc_from_rgb(rgb)).collect();
-        Self([0, 1, 2].map(|i| Grid::new(size, converted.iter().map(|color| color[i]).collect())))
-    }
-
-    fn seen(&self, filters: &Filters) -> Seen {
-        let [y, cx, cz] = &self.0;
-        let [by_one, by_two] = [&filters.blue_yellow[0], &filters.blue_yellow[1]]
-            .map(|(share, kernel)| (*share, cz.along_both(kernel)));
-        let brightness = y.along_both(&filters.brightness);
-        let red_green = cx.along_both(&filters.red_green);
-        let lab = (0..y.values.len()).into_par_iter().map(|at| {
-            let cz = by_one.0 * by_one.1.values[at] + by_two.0 * by_two.1.values[at];
-            let color = [brightness.values[at], red_green.values[at], cz];
-            hunt_lab(rgb_from_ycc(color).map(|c| c.clamp(0.0, 1.0)))
-        });
-        let light = Grid::new(y.size, y.values.iter().map(|y| (y + 16.0) / 116.0).collect());
-        let smooth = light.along_rows(&filters.smooth);
-        Seen {
-            lab: lab.collect(),
-            edges: strength(&light, &smooth, &filters.first, &filters.smooth),
-            points: strength(&light, &smooth, &filters.second, &filters.smooth),
-        }
-    }
+/// How visible a difference of colours is: [F] Eqs. 3 and 4.
+pub(crate) struct ColorErrors {
+    /// The difference at the knee, and how much there is between it and the largest.
+    knee: f32,
+    rest: f32,
 }
 
-/// Length of the vector of what a filter and the same filter on its side find. `smooth` is `light`
-/// smoothed along its rows.
-fn strength(light: &Grid, smooth: &Grid, filter: &Kernel, across: &Kernel) -> Vec<f32> {
-    let horizontal = light.along_rows(filter).along_columns(across);
-    let vertical = smooth.along_columns(filter);
-    horizontal.values.iter().zip(&vertical.values).map(|(x, y)| x.hypot(*y)).collect()
-}
-
-/// Difference of two colours, 0 to 1: [F] Eqs. 3 and 4. `largest` is the largest there is.
-fn color_error(a: &[f32; 3], b: &[f32; 3], largest: f32) -> f32 {
-    const EXPONENT: f32 = 0.7;
+/// Scaled by the two colours of the cube that are farthest apart, green and blue.
+pub(crate) fn color_errors() -> ColorErrors {
     const KNEE: f32 = 0.4;
-    const AT_KNEE: f32 = 0.95;
-    let most = largest.powf(EXPONENT);
-    let (error, knee) = (hyab(a, b).powf(EXPONENT), KNEE * most);
-    match error < knee {
-        true => AT_KNEE / knee * error,
-        false => AT_KNEE + (error - knee) / (most - knee) * (1.0 - AT_KNEE),
-    }
+    let largest = hyab(hunt_lab([0.0, 1.0, 0.0]), hunt_lab([0.0, 0.0, 1.0]));
+    let most = power(largest, EXPONENT);
+    ColorErrors { knee: KNEE * most, rest: most - KNEE * most }
 }
 
-/// Of green and blue, the two colours of the cube that are farthest apart.
-fn largest_color_difference() -> f32 {
-    hyab(&hunt_lab([0.0, 1.0, 0.0]), &hunt_lab([0.0, 0.0, 1.0]))
+/// Of a difference of colours: small ones count more.
+const EXPONENT: f32 = 0.7;
+
+impl ColorErrors {
+    /// Difference of two colours, 0 to 1.
+    #[inline(always)]
+    pub(crate) fn of(&self, a: [f32; 3], b: [f32; 3]) -> f32 {
+        const AT_KNEE: f32 = 0.95;
+        let error = power(hyab(a, b), EXPONENT);
+        let below = AT_KNEE / self.knee * error;
+        let above = AT_KNEE + (error - self.knee) / self.rest * (1.0 - AT_KNEE);
+        if error < self.knee { below } else { above }
+    }
 }
 
 /// City-block distance of lightness and colour, Euclidean distance of colours: Abasi et al. 2020.
-fn hyab(a: &[f32; 3], b: &[f32; 3]) -> f32 {
-    (a[0] - b[0]).abs() + (a[1] - b[1]).hypot(a[2] - b[2])
+#[inline(always)]
+fn hyab(a: [f32; 3], b: [f32; 3]) -> f32 {
+    let [x, y] = [a[1] - b[1], a[2] - b[2]];
+    (a[0] - b[0]).abs() + (x * x + y * y).sqrt()
 }
 
 /// The white of D65: X, Y, Z of linear (1, 1, 1).
 const WHITE: [f32; 3] = [0.950_428_55, 1.0, 1.088_900_4];
 
 /// Linear Rec. 709 to CIE XYZ over that white.
+#[inline(always)]
 fn xyz_from_rgb([r, g, b]: [f32; 3]) -> [f32; 3] {
     let xyz = [
         10_135_552.0 / 24_577_794.0 * r
@@ -242,15 +187,17 @@ fn xyz_from_rgb([r, g, b]: [f32; 3]) -> [f32; 3] {
             + 8_788_810.0 / 73_733_382.0 * g
             + 70_074_185.0 / 73_733_382.0 * b,
     ];
-    [0, 1, 2].map(|i| xyz[i] / WHITE[i])
+    [xyz[0] / WHITE[0], xyz[1] / WHITE[1], xyz[2] / WHITE[2]]
 }
 
-fn ycc_from_rgb(rgb: [f32; 3]) -> [f32; 3] {
+#[inline(always)]
+pub(crate) fn ycc_from_rgb(rgb: [f32; 3]) -> [f32; 3] {
     let [x, y, z] = xyz_from_rgb(rgb);
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
-fn rgb_from_ycc([luma, cx, cz]: [f32; 3]) -> [f32; 3] {
+#[inline(always)]
+pub(crate) fn rgb_from_ycc([luma, cx, cz]: [f32; 3]) -> [f32; 3] {
     let y = (luma + 16.0) / 116.0;
     let [x, y, z] = [(y + cx / 500.0) * WHITE[0], y * WHITE[1], (y - cz / 200.0) * WHITE[2]];
     [
@@ -260,13 +207,35 @@ fn rgb_from_ycc([luma, cx, cz]: [f32; 3]) -> [f32; 3] {
     ]
 }
 
-/// L\*a\*b\* whose colour fades in the dark, [F] Section 4.1.2.
-fn hunt_lab(rgb: [f32; 3]) -> [f32; 3] {
+/// The cube root, whose slope ends near 0: of L\*a\*b\*.
+#[inline(always)]
+fn root(v: f32) -> f32 {
     const DELTA: f32 = 6.0 / 29.0;
-    let [x, y, z] = xyz_from_rgb(rgb).map(|v| match v > DELTA * DELTA * DELTA {
-        true => v.cbrt(),
-        false => v / (3.0 * DELTA * DELTA) + 4.0 / 29.0,
-    });
+    const KNEE: f32 = DELTA * DELTA * DELTA;
+    let root = cube_root(if v > KNEE { v } else { KNEE });
+    if v > KNEE { root } else { v / (3.0 * DELTA * DELTA) + 4.0 / 29.0 }
+}
+
+/// L\*a\*b\* whose colour fades in the dark, [F] Section 4.1.2.
+#[inline(always)]
+pub(crate) fn hunt_lab(rgb: [f32; 3]) -> [f32; 3] {
+    let [x, y, z] = xyz_from_rgb(rgb);
+    let [x, y, z] = [root(x), root(y), root(z)];
     let lightness = 116.0 * y - 16.0;
     [lightness, 0.01 * lightness * 500.0 * (x - y), 0.01 * lightness * 200.0 * (y - z)]
+}
+
+/// Weights at −radius..=radius.
+fn sampled(radius: i32, weight: impl Fn(f64) -> f64) -> Vec<f64> {
+    (-radius..=radius).map(|x| weight(f64::from(x))).collect()
+}
+
+/// Weights whose positive ones sum to 1 and whose negative ones to −1, without ends that no f32 would show.
+fn balanced(weights: &[f64]) -> Kernel {
+    const NOTHING: f64 = 1e-9;
+    let positive: f64 = weights.iter().filter(|w| **w > 0.0).sum();
+    let negative: f64 = -weights.iter().filter(|w| **w < 0.0).sum::<f64>();
+    let scaled = |w: &f64| (if *w < 0.0 { w / negative } else { w / positive }) as f32;
+    let idle = weights.iter().take_while(|w| w.abs() < NOTHING * positive).count();
+    weights[idle..weights.len() - idle].iter().map(scaled).collect()
 }

@@ -6,19 +6,20 @@
 //! limits, or calls a difference too large.
 #![forbid(unsafe_code)]
 
-mod convolve;
 mod exposure;
 mod false_color;
 mod flip;
 mod headers;
+mod lanes;
 mod measure;
 mod pair;
 mod picture;
+mod tiles;
 
 pub use false_color::{FalseColor, NOT_A_NUMBER};
 pub use flip::{Flip, PIXELS_PER_DEGREE, flip_ldr};
 pub use headers::{AttributeDifference, differing_attributes};
-pub use measure::{Measures, PERCENTILES, Worst, difference};
+pub use measure::{Measures, PERCENTILES, Tally, Worst, difference};
 pub use pair::{CompareError, Pair, layer_of};
 pub use picture::{Picture, Plane, Rect};
 

@@ -1,14 +1,16 @@
 //! Two pictures, one over the other.
 
 use crate::flip::Flip;
-use crate::measure::{Measures, Values};
+use crate::measure::{Measures, Tally};
 use crate::picture::{Picture, Plane, Rect};
+use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Two pictures of one size. Values are compared in linear light, unless both are integers in sRGB.
 #[derive(Debug, Clone)]
 pub struct Pair {
-    a: Picture,
-    b: Picture,
+    a: Arc<Picture>,
+    b: Arc<Picture>,
     /// Whether either was integers in sRGB: of what is brighter than white, it knows nothing.
     on_screen: bool,
 }
@@ -88,10 +90,11 @@ impl Pair {
         }
         let srgb = [&a, &b].map(|picture| picture.srgb_bits.is_some());
         let on_screen = srgb.contains(&true);
-        let pair = match srgb {
-            [true, true] => Self { a, b, on_screen },
-            _ => Self { a: a.into_linear(), b: b.into_linear(), on_screen },
+        let [a, b] = match srgb {
+            [true, true] => [a, b],
+            _ => [a, b].map(Picture::into_linear),
         };
+        let pair = Self { a: Arc::new(a), b: Arc::new(b), on_screen };
         if pair.common().is_empty() {
             return Err(CompareError::NoChannel {
                 a: listed(pair.a.channels.keys()),
@@ -99,6 +102,19 @@ impl Pair {
             });
         }
         Ok(pair)
+    }
+
+    /// A picture over itself: what two files of the same bytes are.
+    ///
+    /// # Errors
+    /// Where it has no channel.
+    pub fn same(picture: Picture) -> Result<Self, CompareError> {
+        if picture.channels.is_empty() {
+            return Err(CompareError::NoChannel { a: listed([""; 0]), b: listed([""; 0]) });
+        }
+        let on_screen = picture.srgb_bits.is_some();
+        let picture = Arc::new(picture);
+        Ok(Self { a: Arc::clone(&picture), b: picture, on_screen })
     }
 
     /// The first picture.
@@ -196,17 +212,32 @@ impl Pair {
         Ok(region.unwrap_or(Rect { x: 0, y: 0, width: 0, height: 0 }))
     }
 
+    /// Looks at all pixels within `region` of a channel.
+    ///
+    /// # Panics
+    /// Where `region` leaves the channel, or the channel is not in both pictures.
+    #[must_use]
+    pub fn tally<'a>(&'a self, channel: &'a str, region: Rect) -> Tally<'a> {
+        let planes = self.planes(channel);
+        for plane in planes {
+            assert!(
+                plane.window.intersection(&region) == Some(region),
+                "compare: the region {region:?} leaves the window {:?}",
+                plane.window
+            );
+        }
+        Tally::of(channel, planes, region)
+    }
+
     /// Measures all pixels within `region` of these channels together.
     ///
     /// # Panics
     /// Where `region` is empty or leaves a channel, or a channel is not in both pictures.
     #[must_use]
     pub fn measure(&self, channels: &[&str], region: Rect) -> Measures {
-        let values = channels.iter().map(|name| {
-            let [a, b] = self.planes(name);
-            Values { channel: name, a: a.values(region).collect(), b: b.values(region).collect() }
-        });
-        Measures::of(values, region)
+        let tallies: Vec<Tally<'_>> =
+            channels.iter().map(|channel| self.tally(channel, region)).collect();
+        Measures::of(&tallies.iter().collect::<Vec<_>>())
     }
 
     /// The three of these channels that FLIP is of: `R`, `G` and `B`, or else those of the first layer,
@@ -220,44 +251,48 @@ impl Pair {
     }
 
     /// FLIP of three channels within `region`, the first picture taken as the reference: of high
-    /// dynamic range unless either picture was of integers.
+    /// dynamic range unless either picture was of integers. Then also FLIP as a screen shows them, cut at white,
+    /// where that is another.
     ///
     /// # Panics
     /// As [`measure`](Self::measure).
     #[must_use]
-    pub fn flip(&self, colors: &[String; 3], region: Rect) -> Flip {
+    pub fn flip(&self, colors: &[String; 3], region: Rect) -> (Flip, Option<Flip>) {
         let [a, b] = self.rgb(colors, region);
         let size = [region.width as usize, region.height as usize];
-        if self.on_screen { Flip::ldr(&a, &b, size) } else { Flip::hdr(&a, &b, size) }
-    }
-
-    /// FLIP of three channels as a screen shows them: cut at white.
-    ///
-    /// # Panics
-    /// As [`measure`](Self::measure).
-    #[must_use]
-    pub fn flip_on_screen(&self, colors: &[String; 3], region: Rect) -> Flip {
-        let [a, b] = self.rgb(colors, region);
-        Flip::ldr(&a, &b, [region.width as usize, region.height as usize])
+        match self.on_screen {
+            true => (Flip::ldr(&a, &b, size), None),
+            false => (Flip::hdr(&a, &b, size), Some(Flip::ldr(&a, &b, size))),
+        }
     }
 
     /// Linear colours of both pictures.
     fn rgb(&self, colors: &[String; 3], region: Rect) -> [Vec<[f32; 3]>; 2] {
+        let width = region.width as usize;
         [0, 1].map(|index| {
+            let planes = colors.each_ref().map(|name| self.planes(name)[index]);
             let mut pixels = vec![[0.0; 3]; region.pixels()];
-            for (channel, name) in colors.iter().enumerate() {
-                let plane = self.planes(name)[index];
-                for (pixel, value) in pixels.iter_mut().zip(plane.values(region)) {
-                    let linear = |v: f64| film::linear_from_srgb(v);
-                    pixel[channel] = if self.is_srgb() { linear(value) } else { value } as f32;
-                }
-            }
+            let rows = pixels.par_chunks_mut(width).enumerate();
+            rows.for_each_init(
+                || vec![0.0; width],
+                |values, (y, row)| {
+                    let y = region.y + y as i64;
+                    for (channel, plane) in planes.iter().enumerate() {
+                        plane.samples.copy_to(plane.index(region.x, y), values);
+                        for (pixel, &value) in row.iter_mut().zip(values.iter()) {
+                            let linear = |v: f64| film::linear_from_srgb(v);
+                            pixel[channel] =
+                                if self.is_srgb() { linear(value) } else { value } as f32;
+                        }
+                    }
+                },
+            );
             pixels
         })
     }
 
     pub(crate) fn planes(&self, name: &str) -> [&Plane; 2] {
-        [&self.a, &self.b].map(|picture| {
+        [&self.a, &self.b].map(|picture: &Arc<Picture>| {
             let Some(plane) = picture.channels.get(name) else {
                 unreachable!("compare: the channel '{name}' is not in both pictures")
             };

@@ -87,6 +87,40 @@ impl Plane {
     }
 }
 
+impl Plane {
+    /// Where the value of a pixel is.
+    pub(crate) fn index(&self, x: i64, y: i64) -> usize {
+        ((y - self.window.y) * self.window.width + x - self.window.x) as usize
+    }
+
+    /// The value of a pixel within the window.
+    pub(crate) fn at(&self, x: i64, y: i64) -> f64 {
+        self.samples.at(self.index(x, y))
+    }
+
+    /// A row of a region that both planes have. Reports whether both are the same, bit for bit: then `b` is left as
+    /// it was.
+    pub(crate) fn row(
+        planes: [&Self; 2],
+        region: Rect,
+        y: i64,
+        a: &mut Vec<f64>,
+        b: &mut Vec<f64>,
+    ) -> bool {
+        let count = region.width as usize;
+        let [first, second] = planes.map(|plane| plane.index(region.x, y));
+        a.resize(count, 0.0);
+        planes[0].samples.copy_to(first, a);
+        let same = std::ptr::eq(planes[0], planes[1])
+            || planes[0].samples.same_bits(first, &planes[1].samples, second, count);
+        if !same {
+            b.resize(count, 0.0);
+            planes[1].samples.copy_to(second, b);
+        }
+        same
+    }
+}
+
 impl Picture {
     /// Reads an EXR, PNG, JPEG or Radiance HDR file, told apart by their first bytes.
     ///
@@ -98,6 +132,15 @@ impl Picture {
         } else {
             Ok(Self::from_raster(film::read_raster(path)?))
         }
+    }
+
+    /// Reads two at a time; where both fail, the first failure counts.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_both([a, b]: [&Path; 2]) -> Result<[Self; 2], FilmError> {
+        let (a, b) = rayon::join(|| Self::read(a), || Self::read(b));
+        Ok([a?, b?])
     }
 
     /// The channels of all parts.

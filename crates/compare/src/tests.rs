@@ -4,6 +4,8 @@ use super::*;
 use film::Samples;
 use std::collections::BTreeMap;
 
+mod threads;
+
 fn plane(window: Rect, values: Vec<f32>) -> Plane {
     Plane { window, samples: Samples::from_f32(values) }
 }

@@ -97,6 +97,46 @@ impl Samples {
         }
     }
 
+    /// Writes the values from `first` on, as many as `out` has room for, in a type that holds all of them exactly.
+    ///
+    /// # Panics
+    /// If there are not as many.
+    pub fn copy_to(&self, first: usize, out: &mut [f64]) {
+        fn copy<T: Copy>(values: &[T], out: &mut [f64], exact: impl Fn(T) -> f64) {
+            for (out, value) in out.iter_mut().zip(values) {
+                *out = exact(*value);
+            }
+        }
+        let range = first..first + out.len();
+        match &self.0 {
+            FlatSamples::F16(values) => copy(&values[range], out, |value| value.to_f64()),
+            FlatSamples::F32(values) => copy(&values[range], out, f64::from),
+            FlatSamples::U32(values) => copy(&values[range], out, f64::from),
+        }
+    }
+
+    /// Whether `count` values from `first` on, and as many of `other` from `other_first` on, are the same bits of the
+    /// same number type.
+    ///
+    /// # Panics
+    /// If either has not as many.
+    #[must_use]
+    pub fn same_bits(&self, first: usize, other: &Self, other_first: usize, count: usize) -> bool {
+        // Without an end in the middle, which would keep the compiler from taking several at once.
+        fn same<T: Copy>(a: &[T], b: &[T], bits: impl Fn(T) -> u32) -> bool {
+            a.iter().zip(b).fold(0, |found, (&a, &b)| found | (bits(a) ^ bits(b))) == 0
+        }
+        let (here, there) = (first..first + count, other_first..other_first + count);
+        match (&self.0, &other.0) {
+            (FlatSamples::F16(a), FlatSamples::F16(b)) => {
+                same(&a[here], &b[there], |value| value.to_bits().into())
+            }
+            (FlatSamples::F32(a), FlatSamples::F32(b)) => same(&a[here], &b[there], f32::to_bits),
+            (FlatSamples::U32(a), FlatSamples::U32(b)) => same(&a[here], &b[there], |value| value),
+            _ => false,
+        }
+    }
+
     /// Number of values.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -194,6 +234,15 @@ pub fn read_exr_file(path: &Path) -> Result<ExrFile, FilmError> {
         display_size: [columns as u32, rows as u32],
         parts: parts.collect(),
     })
+}
+
+/// The text of a string attribute of an EXR's first part, if it has it. Reads no pixel.
+///
+/// # Errors
+/// As [`read_exr_file()`], where the headers tell.
+pub fn exr_text(path: &Path, name: &str) -> Result<Option<String>, FilmError> {
+    let headers = read_exr_headers(path)?;
+    Ok(headers.first().and_then(|header| header.text(name)))
 }
 
 /// How many bytes all pixels of an EXR file take once they are read, by its headers alone.

@@ -22,7 +22,7 @@ mod tone;
 pub use error::FilmError;
 pub use exr_header::{ExrAttribute, ExrHeader, read_exr_headers};
 pub use exr_read::{
-    ExrFile, ExrPart, ExrPicture, Samples, exr_pixel_bytes, read_exr, read_exr_file,
+    ExrFile, ExrPart, ExrPicture, Samples, exr_pixel_bytes, exr_text, read_exr, read_exr_file,
 };
 pub use exr_write::HALF_MAX;
 pub use image_read::{Image, Texels, read_image};

@@ -1,11 +1,13 @@
 //! The list of what is timed, each scene of it checked.
 
 use crate::args::{BenchArgs, Overrides, ViewArgs};
+use crate::bench::filled::Filled;
 use crate::bench::generated::Made;
 use crate::bench::report::Skipped;
 use crate::bench::suites::{Asked, Suites};
 use crate::errors::Failure;
 use crate::input::{Input, SceneValues};
+use crate::progress::Progress;
 use scene::{Scene, SuiteRow};
 use std::path::PathBuf;
 
@@ -23,6 +25,8 @@ pub struct Case {
     pub over: Option<String>,
     /// Milliseconds a frame that the paper states.
     pub paper_ms: Option<f64>,
+    /// Whether it is the case before with a preset, beside which it is shown.
+    pub beside: bool,
 }
 
 /// What is to be done, and what cannot be.
@@ -34,12 +38,18 @@ pub struct Cases {
     pub skipped: Vec<Skipped>,
     /// Files of suites, which are inputs too.
     pub suites: Vec<PathBuf>,
+    /// Holds filled models while cases need them.
+    filled: Filled,
 }
 
 impl Cases {
     /// All that the command line asks for. What is wrong with any of it is found here; models that are
     /// missing are no fault of a suite's.
-    pub fn new(args: &BenchArgs, suites: &mut Suites) -> Result<Self, Failure> {
+    pub fn new(
+        args: &BenchArgs,
+        suites: &mut Suites,
+        progress: &Progress,
+    ) -> Result<Self, Failure> {
         let mut cases = Self::default();
         for asked in args.asked() {
             match suites.find(&asked)? {
@@ -47,7 +57,7 @@ impl Cases {
                 Asked::Suite(name, suite) => {
                     cases.suites.push(asked);
                     for row in &suite.rows {
-                        cases.add_row(&name, row, args, suites)?;
+                        cases.add_row(&name, row, args, suites, progress)?;
                     }
                 }
             }
@@ -63,11 +73,13 @@ impl Cases {
     }
 
     fn add_scene(&mut self, path: PathBuf, overrides: &Overrides) -> Result<(), Failure> {
-        let values = SceneValues::new(overrides);
-        let input = Input::load(&path, &values, &ViewArgs::default())?;
-        let name = input.name();
-        let (suite, made, over, paper_ms) = (None, None, None, None);
-        self.cases.push(Case { name, suite, input, made, over, paper_ms });
+        for beside in each_preset(overrides) {
+            let values = SceneValues::new(&of_preset(overrides, beside));
+            let input = Input::load(&path, &values, &ViewArgs::default())?;
+            let name = named(input.name(), overrides, beside);
+            let (suite, made, over, paper_ms) = (None, None, None, None);
+            self.cases.push(Case { name, suite, input, made, over, paper_ms, beside });
+        }
         Ok(())
     }
 
@@ -78,9 +90,12 @@ impl Cases {
         row: &SuiteRow,
         args: &BenchArgs,
         suites: &Suites,
+        progress: &Progress,
     ) -> Result<(), Failure> {
         for count in each(&row.point_counts) {
-            for cells in each(&row.cells_per_pass) {
+            for (cells, beside) in each(&row.cells_per_pass).into_iter().flat_map(|cells| {
+                each_preset(&args.overrides).into_iter().map(move |it| (cells, it))
+            }) {
                 let mut name = row.name.clone();
                 let mut values = SceneValues::set(&row.set);
                 if let Some(count) = count {
@@ -97,7 +112,8 @@ impl Cases {
                         &format!("cells_per_pass = {cells}"),
                     );
                 }
-                values.append(&args.overrides);
+                values.append(&of_preset(&args.overrides, beside));
+                name = named(name, &args.overrides, beside);
                 let skipped = |reason| Skipped { name: name.clone(), suite: suite.into(), reason };
                 if let (Some(count), Some(most)) = (count, args.max_points)
                     && count > most
@@ -107,8 +123,13 @@ impl Cases {
                     continue;
                 }
                 if let Some(reason) = missing_model(row, &values, suites) {
-                    self.skipped.push(skipped(reason));
-                    continue;
+                    let Some(model) = &row.fill else {
+                        self.skipped.push(skipped(reason));
+                        continue;
+                    };
+                    let points = self.filled.of(model, progress)?;
+                    let written = serde_json::json!(points.to_string_lossy()).to_string();
+                    values.add("objects.0.points", &written, "the points that fill them");
                 }
                 let input =
                     Input::load(&row.scene, &values, &ViewArgs::default()).map_err(|failure| {
@@ -126,10 +147,29 @@ impl Cases {
                     },
                     over: row.over.clone(),
                     paper_ms: row.paper_ms,
+                    beside,
                 });
             }
         }
         Ok(())
+    }
+}
+
+/// Without a preset that is asked for, then with it: whether it is with it.
+fn each_preset(overrides: &Overrides) -> Vec<bool> {
+    if overrides.preset.is_some() { vec![false, true] } else { vec![false] }
+}
+
+/// The same with the preset, or without.
+fn of_preset(overrides: &Overrides, with: bool) -> Overrides {
+    let preset = overrides.preset.clone().filter(|_| with);
+    Overrides { preset, ..overrides.clone() }
+}
+
+fn named(name: String, overrides: &Overrides, with: bool) -> String {
+    match overrides.preset.as_ref().filter(|_| with) {
+        Some(preset) => format!("{name}, preset {preset}"),
+        None => name,
     }
 }
 

@@ -11,6 +11,7 @@ use crate::input::Input;
 use crate::progress::Progress;
 use crate::stats::{Measured, RaysPerSecond, Row, Spread, milliseconds, pixel_hash};
 use crate::{interrupt, memory};
+use film::Film;
 use plan::Plan;
 use points::PointSet;
 use render::Traversal;
@@ -20,14 +21,14 @@ use std::time::{Duration, Instant};
 /// Builds are repeated within this time, so that those of a million points are timed once.
 const BUILDING: Duration = Duration::from_secs(5);
 
-/// The row of a case: `runs` frames after one to warm up.
+/// The row of a case, and its picture: `runs` frames after one to warm up.
 pub fn measure(
     case: &Case,
     engine: &Engine,
     runs: u32,
     on_cpu: bool,
     progress: &Progress,
-) -> Result<Row, Failure> {
+) -> Result<(Row, Film), Failure> {
     // Held, so that temporary files are removed before an interruption ends the process.
     interrupt::held(|| match case.made {
         None => timed(case, &case.input, engine, [runs, u32::from(on_cpu)], progress),
@@ -56,7 +57,7 @@ fn timed(
     engine: &Engine,
     [runs, on_cpu]: [u32; 2],
     progress: &Progress,
-) -> Result<Row, Failure> {
+) -> Result<(Row, Film), Failure> {
     memory::require_picture(input.window(None)?, &[], 0)?;
     let started = Instant::now();
     let mut input = input.clone();
@@ -100,7 +101,7 @@ fn timed(
         dropped,
         filtered_out,
     });
-    Ok(Row {
+    let row = Row {
         suite: case.suite.clone(),
         gpu_ms: (!times.gpu.is_empty()).then(|| Spread::of_milliseconds(times.gpu.clone())),
         build_ms: Spread::of(&builds),
@@ -111,7 +112,8 @@ fn timed(
         paper_frames_per_second: case.paper_ms.map(|ms| 1e3 / ms),
         rays_per_second: RaysPerSecond::new(&row.rays, row.trace_ms.median, &times.traversal()),
         ..row
-    })
+    };
+    Ok((row, frame.film))
 }
 
 /// Plans; of scans, whose planning is what is to be looked at, as often as frames while that takes no longer than

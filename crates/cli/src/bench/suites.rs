@@ -5,7 +5,7 @@
 //! counts, and models that `tools/fetch-models` fetched are found.
 
 use crate::errors::{Exit, Failure};
-use crate::input::is_scene_file;
+use crate::input::is_toml;
 use scene::Suite;
 use std::env;
 use std::fs;
@@ -70,7 +70,7 @@ impl Suites {
             let suite = Suite::load(&file).map_err(|error| self.failure(error.into()))?;
             return Ok(Asked::Suite(name.to_owned(), suite));
         }
-        if is_scene_file(asked) && Suite::is_one(asked)? {
+        if is_toml(asked) && Suite::is_one(asked)? {
             let name = asked.file_stem().unwrap_or(asked.as_os_str()).to_string_lossy();
             return Ok(Asked::Suite(name.into_owned(), Suite::load(asked)?));
         }

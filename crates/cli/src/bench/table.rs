@@ -27,6 +27,10 @@ const COLUMNS: &[Column] = &[
     ("plan + build over", |row| {
         row.prepared_over.as_ref().map(|over| format!("{} × {}", short(over.ratio), over.name))
     }),
+    ("trace ×", |row| row.beside.as_ref().map(|it| short(it.trace_ratio))),
+    ("build ×", |row| row.beside.as_ref().map(|it| short(it.build_ratio))),
+    ("FLIP", |row| row.beside.as_ref().map(|it| format!("{:.4}", it.flip))),
+    ("pixels differ", |row| row.beside.as_ref().map(|it| format!("{:.1} %", 100.0 * it.differing))),
     ("Mrays/s", |row| Some(short(row.rays_per_second.all / 1e6))),
     ("tests/ray", |row| Some(short(row.tests_per_ray))),
     ("bytes/point", |row| Some(short(row.bytes_per_point))),

@@ -10,8 +10,9 @@ use crate::bench::{plot, table};
 use crate::engine::{Engine, with_engine};
 use crate::errors::{Exit, Failure};
 use crate::progress::Progress;
-use crate::stats::{PreparedOver, Row};
+use crate::stats::{Beside, PreparedOver, Row};
 use crate::{console, files};
+use film::Film;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -33,21 +34,22 @@ pub fn run(args: &BenchArgs) -> Result<Exit, Failure> {
     args.plot.as_deref().map_or(Ok(()), plot::check_path)?;
     let earlier = args.compare.as_deref().map(Earlier::read).transpose()?;
     let mut suites = Suites::default();
-    let cases = Cases::new(args, &mut suites)?;
+    let progress = Progress::new(&args.progress);
+    let cases = Cases::new(args, &mut suites, &progress)?;
     earlier.as_ref().map_or(Ok(()), |earlier| earlier.require_any(cases.names()))?;
     let mut inputs: Vec<&Path> = cases.cases.iter().flat_map(|case| case.input.files()).collect();
     inputs.extend(cases.suites.iter().chain(&args.compare).map(|path| path.as_path()));
     files::check_distinct(&outputs, &inputs)?;
 
-    let progress = Progress::new(&args.progress);
     let mut report = with_engine(&args.device, |engine| {
         let mut report = Report::new(engine, args.runs);
         for skipped in &cases.skipped {
             skip(skipped.clone(), &mut report, &progress);
         }
+        let mut last = None;
         for (case, number) in cases.cases.iter().zip(1..) {
             progress.task(&format!("{number}/{} {}", cases.cases.len(), case.name));
-            time(case, engine, args.cpu_preparation, &mut report, &progress)?;
+            time(case, engine, args.cpu_preparation, (&mut report, &mut last), &progress)?;
         }
         Ok(report)
     })?;
@@ -65,16 +67,24 @@ fn time(
     case: &Case,
     engine: &Engine,
     on_cpu: bool,
-    report: &mut Report,
+    (report, last): (&mut Report, &mut Option<(String, Film)>),
     progress: &Progress,
 ) -> Result<(), Failure> {
+    // The picture of the case before, for one that is shown beside it.
+    let before = last.take();
     match (measure(case, engine, report.runs, on_cpu, progress), &case.suite) {
-        (Ok(row), _) => {
+        (Ok((row, film)), _) => {
+            let other = before.filter(|_| case.beside).and_then(|(name, film)| {
+                let is_it = |row: &&Row| row.suite == case.suite && row.name == name;
+                Some((report.rows.iter().rev().find(is_it)?, film))
+            });
+            let beside = other.map(|(other, it)| Beside::new((&row, &film), (other, &it)));
+            *last = Some((case.name.clone(), film));
             let is_earlier =
                 |other: &&Row| other.suite == case.suite && Some(&other.name) == case.over.as_ref();
             let earlier = report.rows.iter().find(is_earlier);
             let prepared_over = earlier.map(|earlier| PreparedOver::new(&row, earlier));
-            report.rows.push(Row { prepared_over, ..row });
+            report.rows.push(Row { prepared_over, beside, ..row });
         }
         (Err(Failure { exit: Exit::Exhausted, lines }), Some(suite)) => {
             let reason = format!("does not fit: {}", lines.join("; "));

@@ -9,7 +9,9 @@ use crate::progress::Progress;
 /// Loads the scene, reads its points and plans its render: what passes here does not fail there
 /// for the scene's sake.
 pub fn run(args: &CheckArgs) -> Result<(), Failure> {
-    let mut input = Input::load(&args.scene, &SceneValues::set(&args.set), &args.view)?;
+    let mut values = SceneValues::set(&args.set).below(args.root.as_deref());
+    values.add_preset(args.preset.as_deref());
+    let mut input = Input::load(&args.scene, &values, &args.view)?;
     let progress = Progress::new(&args.progress);
     let sets = input.read_points(&progress)?;
     input.plan(&sets, None, &progress)?;

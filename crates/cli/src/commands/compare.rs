@@ -4,28 +4,38 @@ use crate::args::CompareArgs;
 use crate::commands::compare_report::{Measured, Report, SeenFlip};
 use crate::errors::{Exit, Failure};
 use crate::{console, files, interrupt, memory};
-use compare::{AttributeDifference, FalseColor, Measures, Pair, Picture, Rect};
+use compare::{AttributeDifference, FalseColor, Measures, Pair, Picture, Rect, Tally};
 use film::FileFormat;
+use std::collections::HashMap;
 use std::path::Path;
+
+/// Pixels of pictures of which FLIP is computed without being asked for: it takes longer than all the rest.
+const LARGEST_WITH_FLIP: usize = 1 << 21;
 
 /// Compares, writes pictures of the differences, and says what was found.
 pub fn run(args: &CompareArgs) -> Result<Exit, Failure> {
     check_diffs(args)?;
     memory::require_pictures(&[&args.a, &args.b])?;
-    let [a, b] = [Picture::read(&args.a)?, Picture::read(&args.b)?];
-    if args.headers {
-        require_header(&args.a, &a)?;
-        require_header(&args.b, &b)?;
-    }
     let [name_a, name_b] = [&args.a, &args.b].map(|path| path.display().to_string());
     let not_comparable =
         |error: compare::CompareError| Failure::usage(format!("{name_a} and {name_b}: {error}"));
-    let pair = Pair::new(a, b).map_err(not_comparable)?;
+    let pair = read_pair(args)?.map_err(not_comparable)?;
     let channels = pair.selected(&args.channels).map_err(not_comparable)?;
+    let tallies = channels
+        .iter()
+        .map(|&channel| Ok((channel, pair.tally(channel, pair.region(&[channel])?))))
+        .collect::<Result<HashMap<&str, Tally<'_>>, _>>()
+        .map_err(not_comparable)?;
 
     let measured = |name: &str, channels: &[&str]| {
         let region = pair.region(channels)?;
-        let measures = pair.measure(channels, region);
+        let known: Option<Vec<&Tally<'_>>> = (channels.iter())
+            .map(|channel| tallies.get(channel).filter(|tally| tally.region() == region))
+            .collect();
+        let measures = match known {
+            Some(tallies) => Measures::of(&tallies),
+            None => pair.measure(channels, region),
+        };
         Ok(Measured { name: name.to_owned(), region, measures })
     };
     let mut report = Report {
@@ -40,13 +50,15 @@ pub fn run(args: &CompareArgs) -> Result<Exit, Failure> {
             .collect::<Result<_, _>>()
             .map_err(not_comparable)?,
         flip: None,
+        flip_why: None,
         unmatched: pair.unmatched().map(|names| names.into_iter().map(str::to_owned).collect()),
         differing: differing(&pair),
         list_headers: args.headers,
         over: Vec::new(),
     };
-    if !args.no_flip {
-        report.flip = seen_flip(&pair, &channels).map_err(not_comparable)?;
+    match seen_flip(&pair, &channels, &tallies, args).map_err(not_comparable)? {
+        Ok(seen) => report.flip = Some(seen),
+        Err(why) => report.flip_why = Some(why),
     }
     if args.flip.is_some() && report.flip.is_none() {
         return Err(Failure::usage(format!(
@@ -110,19 +122,55 @@ fn layers<'a>(channels: &[&'a str]) -> Vec<(&'a str, Vec<&'a str>)> {
     layers
 }
 
-/// FLIP of the colours among the channels, if they are there.
-fn seen_flip(pair: &Pair, channels: &[&str]) -> Result<Option<SeenFlip>, compare::CompareError> {
-    let Some(colors) = pair.colors(channels) else { return Ok(None) };
+/// Both pictures, one over the other. Files of the same bytes are read once. The outer error is of the files, the
+/// inner of the pictures.
+fn read_pair(args: &CompareArgs) -> Result<Result<Pair, compare::CompareError>, Failure> {
+    if files::same_bytes(&args.a, &args.b) {
+        let picture = Picture::read(&args.a)?;
+        if args.headers {
+            require_header(&args.a, &picture)?;
+        }
+        return Ok(Pair::same(picture));
+    }
+    let [a, b] = Picture::read_both([&args.a, &args.b])?;
+    if args.headers {
+        require_header(&args.a, &a)?;
+        require_header(&args.b, &b)?;
+    }
+    Ok(Pair::new(a, b))
+}
+
+/// FLIP of the colours among the channels, or else why there is none and how to have it.
+fn seen_flip(
+    pair: &Pair,
+    channels: &[&str],
+    tallies: &HashMap<&str, Tally<'_>>,
+    args: &CompareArgs,
+) -> Result<Result<SeenFlip, String>, compare::CompareError> {
+    if args.no_flip {
+        return Ok(Err("left out".to_owned()));
+    }
+    let Some(colors) = pair.colors(channels) else {
+        return Ok(Err("none, since R, G and B are not among the channels".to_owned()));
+    };
     let region = pair.region(&colors.each_ref().map(String::as_str))?;
-    let flip = pair.flip(&colors, region);
-    let on_screen = flip.exposures.is_some().then(|| pair.flip_on_screen(&colors, region));
-    Ok(Some(SeenFlip { colors, region, flip, on_screen }))
+    let known = |name: &String| tallies.get(name.as_str());
+    let equal = |tally: &Tally<'_>| tally.region() == region && tally.is_equal();
+    let is_equal = colors.iter().all(|name| known(name).is_some_and(equal));
+    if region.pixels() > LARGEST_WITH_FLIP && args.flip.is_none() && !is_equal {
+        return Ok(Err(format!(
+            "left out of {}x{} pixels, which is over 2 megapixels; --flip behind the names computes it",
+            region.width, region.height
+        )));
+    }
+    let (flip, on_screen) = pair.flip(&colors, region);
+    Ok(Ok(SeenFlip { colors, region, flip, on_screen }))
 }
 
 /// What is over which limit, one line each.
 fn over(args: &CompareArgs, report: &Report) -> Vec<String> {
     let mut over = Vec::new();
-    let limited = [args.max_abs, args.rmse, args.flip].iter().any(Option::is_some);
+    let limited = [args.max_abs, args.rmse, args.flip_limit()].iter().any(Option::is_some);
     for Measured { name, measures, .. } in &report.channels {
         let Measures { max_abs, rmse, nan, .. } = measures;
         let place = format!("first at {},{}", measures.worst.x, measures.worst.y);
@@ -143,7 +191,7 @@ fn over(args: &CompareArgs, report: &Report) -> Vec<String> {
             }
         }
     }
-    if let (Some(limit), Some(seen)) = (args.flip, &report.flip)
+    if let (Some(limit), Some(seen)) = (args.flip_limit(), &report.flip)
         && seen.flip.mean > limit
     {
         over.push(format!("FLIP: the mean {:?} is over --flip {limit:?}", seen.flip.mean));

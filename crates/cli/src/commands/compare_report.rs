@@ -19,6 +19,8 @@ pub struct Report {
     pub layers: Vec<Measured>,
     /// FLIP of the colours, where they were compared and FLIP was not left out.
     pub flip: Option<SeenFlip>,
+    /// Why there is no FLIP, and how to have it, where there is none.
+    pub flip_why: Option<String>,
     /// Channels that only the first, and only the second has.
     pub unmatched: [Vec<String>; 2],
     /// What differs in the headers.
@@ -76,10 +78,9 @@ impl Report {
         writeln!(out)?;
         out.push_str(&self.table());
         writeln!(out)?;
-        match &self.flip {
-            Some(seen) => writeln!(out, "{}", flip_line(seen))?,
-            None if args.no_flip => writeln!(out, "FLIP     left out")?,
-            None => writeln!(out, "FLIP     none, since R, G and B are not among the channels")?,
+        match (&self.flip, &self.flip_why) {
+            (Some(seen), _) => writeln!(out, "{}", flip_line(seen))?,
+            (None, why) => writeln!(out, "FLIP     {}", why.as_deref().unwrap_or("none"))?,
         }
         for (names, which) in self.unmatched.iter().zip(["a", "b"]) {
             if !names.is_empty() {
@@ -90,8 +91,8 @@ impl Report {
         for line in &self.over {
             writeln!(out, "over     {line}")?;
         }
-        let limits =
-            [args.max_abs, args.rmse, args.flip].iter().any(Option::is_some) || args.headers;
+        let limits = [args.max_abs, args.rmse, args.flip_limit()].iter().any(Option::is_some)
+            || args.headers;
         let verdict = match (self.over.is_empty(), limits) {
             (false, _) => "fail",
             (true, true) => "pass",
@@ -165,10 +166,11 @@ impl Report {
             "channels": named(&self.channels),
             "layers": layers,
             "flip": self.flip.as_ref().map(|seen| number(seen.flip.mean)),
+            "flip_why": self.flip_why,
             "flip_details": self.flip.as_ref().map(flip_json),
             "only_a": self.unmatched[0],
             "only_b": self.unmatched[1],
-            "limits": { "max_abs": args.max_abs, "rmse": args.rmse, "flip": args.flip },
+            "limits": { "max_abs": args.max_abs, "rmse": args.rmse, "flip": args.flip_limit() },
             "over": self.over,
         });
         if self.list_headers {

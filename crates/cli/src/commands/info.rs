@@ -23,7 +23,7 @@ const JUDGED: u64 = 2_000_000;
 pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     let progress = Progress::new(&args.progress);
     if args.columns.is_some() {
-        if input::is_scene_file(&args.file) {
+        if input::is_toml(&args.file) {
             return Err(input::columns_of_scene(&args.file));
         }
         if info_picture::is_picture(&args.file) {
@@ -33,7 +33,16 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
             )));
         }
     }
-    let text = if input::is_scene_file(&args.file) {
+    if args.scene {
+        if input::is_toml(&args.file) || !info_picture::is_picture(&args.file) {
+            return Err(Failure::usage(format!(
+                "{}: --scene prints the scene of an EXR, but this is none; leave it out",
+                args.file.display()
+            )));
+        }
+        return console::result(&input::scene_of_picture(&args.file)?);
+    }
+    let text = if input::is_toml(&args.file) {
         of_scene(args, &progress)?
     } else if info_picture::is_picture(&args.file) {
         info_picture::of(&args.file, args.json)?
@@ -80,7 +89,8 @@ fn judge(summary: &mut PointSummary, set: &PointSet, progress: &Progress) {
 }
 
 fn of_scene(args: &InfoArgs, progress: &Progress) -> Result<String, Failure> {
-    let input = Input::load(&args.file, &SceneValues::default(), &ViewArgs::default())?;
+    let values = SceneValues::default().below(args.root.as_deref());
+    let input = Input::load(&args.file, &values, &ViewArgs::default())?;
     let sets = input.read_all(progress)?;
     let plan = input.plan(&sets, None, progress)?;
     let mut summaries: Vec<Arc<PointSummary>> = Vec::new();

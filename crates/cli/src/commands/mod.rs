@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod compare_report;
 mod devices;
+pub mod fill;
 mod info;
 mod info_picture;
 mod render;
@@ -22,6 +23,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Command::Info(args) => info::run(args)?,
         Command::Check(args) => check::run(args)?,
         Command::Schema(args) => console::result(&format!("{:#}\n", schema(args)))?,
+        Command::Fill(args) => fill::run(args)?,
         Command::Devices => devices::run()?,
         Command::Compare(args) => return compare::run(args),
     }

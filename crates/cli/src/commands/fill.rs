@@ -1,0 +1,67 @@
+//! `fill`: a volume of points inside a surface.
+
+use crate::args::FillArgs;
+use crate::errors::Failure;
+use crate::input;
+use crate::progress::Progress;
+use crate::{files, interrupt, memory};
+use points::fill::NotFilled;
+use points::{PlyPoints, ReadOptions};
+use std::path::Path;
+
+/// Fills, and writes the file.
+pub fn run(args: &FillArgs) -> Result<(), Failure> {
+    let is_ply = args.output.extension().is_some_and(|it| it.eq_ignore_ascii_case("ply"));
+    if !is_ply {
+        return Err(Failure::usage(format!(
+            "{}: expected the extension '.ply', the format that fill writes; rename the output",
+            args.output.display()
+        )));
+    }
+    files::check_output(&args.output)?;
+    files::check_distinct(&[&args.output], &[&args.input])?;
+    let progress = Progress::new(&args.progress);
+    let columns = args.columns.clone().unwrap_or_default();
+    let options = ReadOptions { columns, ..ReadOptions::default() };
+    let set = input::read_file(&args.input, &options, &progress)?;
+    let surface = set.len();
+    let filled = filled(&args.input, &set.positions, args.count, args.reach, &progress)?;
+    drop(set);
+    write(&args.output, &filled)?;
+    progress.note(&format!(
+        "{}: {surface} points, and {} inside -> {}",
+        args.input.display(),
+        args.count,
+        args.output.display()
+    ));
+    Ok(())
+}
+
+/// Points of a surface, and so many inside. `file` names them in messages.
+pub fn filled(
+    file: &Path,
+    surface: &[[f64; 3]],
+    count: u32,
+    reach: f64,
+    progress: &Progress,
+) -> Result<PlyPoints, Failure> {
+    memory::require_points(surface.len() as u64 + u64::from(count))?;
+    let filled = interrupt::held(|| {
+        points::fill::filled(surface, count, reach, progress).map_err(|error| match error {
+            NotFilled::Interrupted => Failure::interrupted(),
+            NotFilled::NoInside => Failure::usage(format!(
+                "{}: found no inside, expected points that enclose one; raise --reach where their surface has \
+                 wide holes",
+                file.display()
+            )),
+        })
+    });
+    progress.clear();
+    filled
+}
+
+/// Writes the file, whole or not at all.
+pub fn write(path: &Path, filled: &PlyPoints) -> Result<(), Failure> {
+    let bytes = points::encode_ply("pointillist fill", filled);
+    interrupt::writing(|| Ok(film::store(path, &bytes)?))
+}
