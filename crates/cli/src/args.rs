@@ -83,6 +83,9 @@ pub struct RenderArgs {
     pub color: Option<ColorBy>,
     #[command(flatten)]
     pub device: DeviceArgs,
+    /// Write what the colours mean as a picture of its own: the colour map of each object that has one, with its range
+    #[arg(long, value_name = "FILE.png")]
+    pub legend: Option<PathBuf>,
     /// Write times and counts of this render as JSON
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,

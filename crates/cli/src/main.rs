@@ -16,6 +16,7 @@ mod errors;
 mod files;
 mod input;
 mod interrupt;
+mod legend;
 mod memory;
 mod point_file;
 mod progress;

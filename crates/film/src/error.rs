@@ -18,6 +18,9 @@ pub enum FilmError {
         /// Its extension without the dot, empty if there is none.
         found: String,
     },
+    /// The program's own font cannot be read.
+    #[error("the font that is part of the program is damaged; install the program again")]
+    Font,
     /// The file to write or to read is a folder.
     #[error("{}: found a folder, expected a file; add a file name", path.display())]
     IsFolder {

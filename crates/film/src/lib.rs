@@ -6,12 +6,14 @@
 //! written whole or not at all: see [`store()`].
 #![forbid(unsafe_code)]
 
+mod canvas;
 mod eight_bit;
 mod error;
 mod exr_header;
 mod exr_read;
 mod exr_write;
 mod image_read;
+mod legend;
 mod picture;
 mod plausible;
 mod raster_read;
@@ -19,6 +21,7 @@ mod srgb;
 mod store;
 mod tone;
 
+pub use canvas::{Canvas, Color, Pen};
 pub use error::FilmError;
 pub use exr_header::{ExrAttribute, ExrHeader, read_exr_headers};
 pub use exr_read::{
@@ -26,6 +29,7 @@ pub use exr_read::{
 };
 pub use exr_write::HALF_MAX;
 pub use image_read::{Image, Texels, read_image};
+pub use legend::{ColorBar, legend};
 pub use picture::{Film, Provenance, Window};
 pub use raster_read::{Raster, is_exr, read_raster};
 pub use srgb::{linear_from_srgb, srgb_byte};

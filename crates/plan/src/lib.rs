@@ -35,6 +35,7 @@ mod neighborhoods;
 mod objects;
 mod picture;
 mod precision;
+mod scales;
 mod shapes;
 mod transfer;
 mod volumes;
@@ -53,6 +54,7 @@ pub use images::{Cleaned, SceneImages};
 pub use missing::{Lacking, Missing};
 pub use needs::{columns as point_columns, filter as point_filter, read_options};
 pub use picture::{Picture, Rays};
+pub use scales::ColorScale;
 pub use shapes::{ShapeKind, Shapes, scatter_kind};
 pub use volumes::Volumes;
 
@@ -178,6 +180,8 @@ pub struct Plan {
     pub missing: Vec<Missing>,
     /// Numbers that were chosen where the scene leaves them to the program, object by object.
     pub chosen: Vec<Chosen>,
+    /// What the colours of the objects mean that are coloured by a map or a transfer function, in their order.
+    pub color_scales: Vec<ColorScale>,
     /// Diagnostics that the film is to have, each at most once. None at first.
     pub diagnostics: Vec<Diagnostic>,
     /// What else the film is to have, each at most once. None at first.
@@ -302,6 +306,7 @@ impl Plan {
         let [world_to_camera, world_to_ndc] = sight.matrices(origin);
         found.chosen.sort_by_key(|chosen| chosen.object);
         let chosen_text = chosen::attribute(&found.chosen);
+        let color_scales = scales::of_scene(scene, &volumes, &found.chosen);
         let scene_lights = framing::lights_for(&scene.lights, scene.key_light, &camera);
         let lights =
             scene_lights.iter().map(|light| local_light(light, &camera, cloud.origin)).collect();
@@ -363,6 +368,7 @@ impl Plan {
             coarse,
             doubts,
             missing: found.missing,
+            color_scales,
             chosen: found.chosen,
             long_steps: found.long_steps,
             diagnostics: Vec::new(),

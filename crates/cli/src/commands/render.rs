@@ -7,7 +7,7 @@ use crate::errors::Failure;
 use crate::input::{Input, SceneValues};
 use crate::progress::Progress;
 use crate::stats::{Measured, Row};
-use crate::{files, interrupt, memory, provenance};
+use crate::{files, interrupt, legend, memory, provenance};
 use film::{FileFormat, Film, Provenance, Style, Tone};
 use plan::{Diagnostic, Extra, Plan};
 use points::Watch;
@@ -21,10 +21,18 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         .iter()
         .map(|output| FileFormat::from_path(output))
         .collect::<Result<_, _>>()?;
-    let outputs: Vec<&Path> =
-        args.outputs.iter().chain(&args.stats).map(|path| path.as_path()).collect();
+    let outputs: Vec<&Path> = args
+        .outputs
+        .iter()
+        .chain(&args.stats)
+        .chain(&args.legend)
+        .map(|path| path.as_path())
+        .collect();
     for output in &outputs {
         files::check_output(output)?;
+    }
+    if let Some(path) = &args.legend {
+        legend::check(path)?;
     }
     let mut values = SceneValues::new(&args.overrides);
     if let Some(samples) = args.samples {
@@ -102,6 +110,8 @@ fn render(
     let exr =
         args.outputs.iter().any(|path| FileFormat::from_path(path).ok() == Some(FileFormat::Exr));
     plan.aovs = exr; // no other file holds them
+    let legend = args.legend.as_ref().map(|path| Ok::<_, Failure>((path, legend::of(&plan)?)));
+    let legend = legend.transpose()?;
     ahead.picture(&plan);
     for (name, count) in plan.names.iter().zip(&plan.isolated).filter(|(_, count)| **count > 0) {
         progress.note(&format!("object '{name}': dropped {count} isolated points"));
@@ -119,6 +129,9 @@ fn render(
         warn_of_bright_values(&frame.film, progress);
     }
     write_pictures(args, provenance, &frame, progress)?;
+    if let Some((path, legend)) = &legend {
+        legend::write(legend, path)?;
+    }
     if let Some(path) = &args.stats {
         let row = Row::new(&Measured {
             name: input.name(),

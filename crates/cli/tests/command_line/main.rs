@@ -17,6 +17,7 @@ mod filters;
 mod headers;
 mod inputs;
 mod inspect;
+mod legend;
 mod meant;
 mod points;
 mod render;
