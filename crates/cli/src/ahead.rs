@@ -2,14 +2,14 @@
 //! and on one core for each.
 
 use crate::engine::Engine;
-use crate::interrupt;
+use crate::{interrupt, threads};
 use gpu::{Device, Kernel};
 use plan::Plan;
 use render::Renderer;
 use scene::{Boundary, Object, Scene, SurfaceKind};
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::thread::{Builder, JoinHandle, available_parallelism};
+use std::thread::{Builder, JoinHandle};
 
 /// There are some twenty pipelines, and one takes half of the time.
 const MOST_THREADS: usize = 8;
@@ -42,7 +42,7 @@ impl Ahead {
             Engine::Gpu(device) => Some(Arc::clone(device)),
             Engine::Reference | Engine::ReferenceF64 => None,
         };
-        let cores = || available_parallelism().map_or(1, Into::into).min(MOST_THREADS);
+        let cores = || threads::count().min(MOST_THREADS);
         let count = device.as_ref().map_or(0, |_| cores());
         let thread = |_| {
             let list = Arc::clone(&list);

@@ -1,22 +1,39 @@
 //! What may be typed. Values are checked for their form here, for their range by the scene.
 
+use crate::errors::Failure;
 use crate::point_file::ColorBy;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use crate::source;
+use clap::builder::{ArgPredicate, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use film::{Tone, ToneCurve};
+use film::{FileFormat, Tone, ToneCurve};
 use plan::{Diagnostic, Extra};
 use scene::ViewFrom;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The whole command line.
 #[derive(Debug, Parser)]
 #[command(name = "pointillist", version, about, max_term_width = 100)]
 #[command(after_help = "Exit codes: 0 done, 1 compare found a difference over a limit, 2 usage, \
-    scene or input at fault, 3 no usable Vulkan device, 4 the device or the machine ran out, \
+    scene or input at fault, 3 the Vulkan device that was asked for is not usable, 4 the device or the machine ran out, \
     130 interrupted.")]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
+    /// Threads that compute at once, those of Mesa's software drivers too [default: one a core]
+    #[arg(long, value_name = "N", global = true, value_parser = parse_threads)]
+    pub threads: Option<usize>,
+    /// What stands on stderr: lines of text, or one JSON object a line
+    #[arg(long, value_name = "FORMAT", global = true, value_enum, default_value_t = LogFormat::Text)]
+    pub log: LogFormat,
+}
+
+/// What lines on stderr look like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum LogFormat {
+    /// As people read it
+    Text,
+    /// An object with time, level, event and message, see docs/running.md
+    Json,
 }
 
 /// What to do.
@@ -43,12 +60,22 @@ pub enum Command {
 #[derive(Debug, Args)]
 pub struct RenderArgs {
     /// Scene file (.toml), a picture (.exr) whose header has the scene that it was made from, or a point file; then
-    /// camera, light and material are chosen
-    #[arg(value_name = "SCENE")]
+    /// camera, light and material are chosen; - is what comes through stdin
+    #[arg(
+        value_name = "SCENE",
+        required = false,
+        required_unless_present = "as_scene",
+        default_value_if("as_scene", ArgPredicate::IsPresent, source::PIPE)
+    )]
     pub scene: PathBuf,
-    /// Picture to write: .exr, .png or .jpg; may be given several times
+    #[command(flatten)]
+    pub source: SourceArgs,
+    /// Picture to write: .exr, .png or .jpg; - writes it to stdout, as --format says; may be given several times
     #[arg(short, long = "output", value_name = "OUT", required = true)]
     pub outputs: Vec<PathBuf>,
+    /// What `-o -` writes to stdout
+    #[arg(long, value_name = "FORMAT", value_enum)]
+    pub format: Option<PictureFormat>,
     #[command(flatten)]
     pub overrides: Overrides,
     /// Rays a pixel
@@ -154,8 +181,11 @@ pub struct SchemaArgs {
 
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// Point file, scene file, or picture (EXR, PNG, JPEG, Radiance HDR)
+    /// Point file, scene file, or picture (EXR, PNG, JPEG, Radiance HDR); - is what comes through stdin
     pub file: PathBuf,
+    /// What comes through stdin, if its contents leave that open: scene, or the extension that a file would have
+    #[arg(long, value_name = "FORMAT", value_parser = PossibleValuesParser::new(source::FORMATS), hide_possible_values = true)]
+    pub input_format: Option<String>,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -246,10 +276,44 @@ pub struct FillArgs {
     pub progress: ProgressArgs,
 }
 
+/// What the input is.
+#[derive(Debug, Args)]
+pub struct SourceArgs {
+    /// Scene, whatever its file is called; - is one that comes through stdin, whose paths start from the working folder
+    #[arg(long = "scene", id = "as_scene", value_name = "FILE", conflicts_with = "scene")]
+    pub as_scene: Option<PathBuf>,
+    /// What comes through stdin, if its contents leave that open: scene, or the extension that a file would have
+    #[arg(long, value_name = "FORMAT", value_parser = PossibleValuesParser::new(source::FORMATS), hide_possible_values = true)]
+    pub input_format: Option<String>,
+}
+
+impl SourceArgs {
+    /// The path to go on with.
+    pub fn resolve(&self, path: &Path) -> Result<PathBuf, Failure> {
+        source::resolve(path, self.as_scene.as_deref(), self.input_format.as_deref())
+    }
+}
+
+/// What a picture on stdout is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum PictureFormat {
+    Exr,
+    Png,
+    Jpg,
+}
+
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Scene file, a picture (.exr) with the scene that it was made from, or a point file
+    /// Scene file, a picture (.exr) with the scene that it was made from, or a point file; - is what comes through stdin
+    #[arg(
+        value_name = "SCENE",
+        required = false,
+        required_unless_present = "as_scene",
+        default_value_if("as_scene", ArgPredicate::IsPresent, source::PIPE)
+    )]
     pub scene: PathBuf,
+    #[command(flatten)]
+    pub source: SourceArgs,
     /// Override one value of the scene, e.g. objects.0.surface.trust=0.7
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub set: Vec<String>,
@@ -306,8 +370,9 @@ pub struct Overrides {
 
 #[derive(Debug, Args)]
 pub struct DeviceArgs {
-    /// Device by a part of its name or by its index, see `pointillist devices`; `reference` renders
-    /// on the CPU without Vulkan, `reference-f64` so in double precision
+    /// Device by a part of its name or by its index, see `pointillist devices`; `vulkan` is the first of these,
+    /// `reference` renders on the CPU without Vulkan, `reference-f64` so in double precision [default: vulkan
+    /// where there is a usable device, else reference]
     #[arg(long, value_name = "NAME|INDEX")]
     pub device: Option<String>,
 }
@@ -367,6 +432,21 @@ impl CompareArgs {
 }
 
 impl RenderArgs {
+    /// What an output is written as: by its extension, or by `--format` where it is stdout.
+    pub fn format_of(&self, output: &Path) -> Result<FileFormat, Failure> {
+        if output != Path::new(source::PIPE) {
+            return Ok(FileFormat::from_path(output)?);
+        }
+        match self.format {
+            Some(PictureFormat::Exr) => Ok(FileFormat::Exr),
+            Some(PictureFormat::Png) => Ok(FileFormat::Png),
+            Some(PictureFormat::Jpg) => Ok(FileFormat::Jpeg),
+            None => Err(Failure::usage(
+                "-: stdout has no extension that says what picture is meant; add --format exr, png or jpg",
+            )),
+        }
+    }
+
     /// How 8-bit files are made.
     pub fn tone(&self) -> Tone {
         let curve = match self.tone {
@@ -437,6 +517,13 @@ fn parse_size(text: &str) -> Result<Size, String> {
         Some([_]) => format!("{EXPECTED}; found a width without a height"),
         _ => EXPECTED.to_owned(),
     })
+}
+
+fn parse_threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(threads @ 1..=1024) => Ok(threads),
+        _ => Err("expected a whole number from 1 to 1024, e.g. 4".to_owned()),
+    }
 }
 
 fn parse_stops(text: &str) -> Result<f64, String> {

@@ -1,11 +1,11 @@
 //! What a plan runs on: a Vulkan device, or the CPU reference in single or double precision.
 
 use crate::args::DeviceArgs;
-use crate::errors::{Exit, Failure};
-use crate::interrupt;
+use crate::errors::{self, Exit, Failure};
 use crate::progress::Progress;
+use crate::{ending, interrupt, memory};
 use film::Film;
-use gpu::{Device, DeviceChoice, Instance, InstanceOptions};
+use gpu::{Device, DeviceChoice, GpuError, Instance, InstanceOptions};
 use kernels::layout::FitOutcome;
 use plan::{Picture, Plan, Rays};
 use points::Grids;
@@ -17,6 +17,34 @@ use std::time::{Duration, Instant};
 
 /// Turns the validation layer on where it is `1`; any message then ends the process with code 4.
 const VALIDATION: &str = "POINTILLIST_VALIDATION";
+
+/// Why no device was opened.
+pub enum Unopened {
+    /// Vulkan, or all of its devices.
+    Device(GpuError),
+    /// A driver would not fit into memory.
+    Memory(Failure),
+}
+
+impl Unopened {
+    /// In one line, without advice about other devices.
+    pub fn in_words(&self) -> String {
+        match self {
+            Self::Device(error) => errors::chain(error),
+            Self::Memory(failure) => failure.lines.join("; "),
+        }
+    }
+}
+
+/// Opens a device, if the process has the memory that drivers take.
+pub fn open_device(choice: &DeviceChoice) -> Result<Arc<Device>, Unopened> {
+    memory::require_driver().map_err(Unopened::Memory)?;
+    let validation = std::env::var_os(VALIDATION).is_some_and(|value| value == "1");
+    ending::driver_is_there();
+    Instance::new(&InstanceOptions { validation })
+        .and_then(|instance| Device::open(&instance, choice))
+        .map_err(Unopened::Device)
+}
 
 /// Something that can execute a plan.
 #[derive(Debug)]
@@ -68,14 +96,15 @@ pub struct Frame {
     pub traversal: Traversal,
 }
 
-/// Opens the engine that was asked for, and lets `work` use it. What the validation layer has to say
-/// is said when everything is destroyed.
+/// Opens the engine that was asked for, or else the default, and lets `work` use it. What the validation layer has to
+/// say is said when everything is destroyed.
 pub fn with_engine<T>(
     args: &DeviceArgs,
+    progress: &Progress,
     work: impl FnOnce(&Engine) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     // Not cut off: a process that ends while a driver starts its threads may crash.
-    let engine = interrupt::held(|| Engine::open(args))?;
+    let engine = interrupt::held(|| Engine::open(args, progress))?;
     let result = work(&engine);
     interrupt::finished();
     let Engine::Gpu(device) = engine else { return result };
@@ -93,20 +122,35 @@ pub fn with_engine<T>(
 }
 
 impl Engine {
-    fn open(args: &DeviceArgs) -> Result<Self, Failure> {
+    fn open(args: &DeviceArgs, progress: &Progress) -> Result<Self, Failure> {
         let choice = match args.device.as_deref().map(str::trim) {
             Some(name) if name.eq_ignore_ascii_case("reference") => return Ok(Self::Reference),
             Some(name) if name.eq_ignore_ascii_case("reference-f64") => {
                 return Ok(Self::ReferenceF64);
             }
+            Some(name) if name.eq_ignore_ascii_case("vulkan") => DeviceChoice::Default,
             Some(name) => DeviceChoice::Named(name.to_owned()),
-            None => DeviceChoice::Default,
+            None => match open_device(&DeviceChoice::Default) {
+                Ok(device) => return Ok(Self::Gpu(device)),
+                // Who checks a device by the layer wants no picture without it.
+                Err(Unopened::Device(error @ GpuError::NoValidation { .. })) => {
+                    return Err(Failure::no_device(&error));
+                }
+                Err(reason) => {
+                    progress.note(&format!(
+                        "rendering by the CPU reference, which gives the same picture, since {}; --device reference \
+                         chooses it, --device vulkan insists on Vulkan",
+                        reason.in_words()
+                    ));
+                    return Ok(Self::Reference);
+                }
+            },
         };
-        let validation = std::env::var_os(VALIDATION).is_some_and(|value| value == "1");
-        let device = Instance::new(&InstanceOptions { validation })
-            .and_then(|instance| Device::open(&instance, &choice))
-            .map_err(|error| Failure::no_device(&error))?;
-        Ok(Self::Gpu(device))
+        match open_device(&choice) {
+            Ok(device) => Ok(Self::Gpu(device)),
+            Err(Unopened::Device(error)) => Err(Failure::no_device(&error)),
+            Err(Unopened::Memory(failure)) => Err(failure),
+        }
     }
 
     /// Name for tables and messages.

@@ -17,7 +17,7 @@ pub enum Exit {
     Difference,
     /// 2: the command line, a scene or an input is at fault.
     Usage,
-    /// 3: no usable Vulkan device.
+    /// 3: the Vulkan device that was asked for is not usable.
     NoDevice,
     /// 4: the device or the machine ran out (memory, disk full), or a bug was met.
     Exhausted,
@@ -90,7 +90,7 @@ impl Failure {
 }
 
 /// The message and what caused it, in one line.
-fn chain(error: &dyn Error) -> String {
+pub fn chain(error: &dyn Error) -> String {
     let mut line = error.to_string();
     let mut source = error.source();
     while let Some(cause) = source {

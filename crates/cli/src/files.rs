@@ -3,14 +3,24 @@
 
 use crate::errors::{Exit, Failure};
 use crate::interrupt;
+use crate::source::PIPE;
 use serde::Serialize;
 use std::fs;
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, ErrorKind, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
 /// Fails where `path` cannot become a file: a missing folder, one that may not be written to, a
 /// folder of that name. Leaves no trace.
 pub fn check_output(path: &Path) -> Result<(), Failure> {
+    if path == Path::new(PIPE) {
+        return match io::stdout().is_terminal() {
+            false => Ok(()),
+            true => Err(Failure::usage(
+                "-: stdout is a terminal, which shows no picture; lead it into a file or a program \
+                 (pointillist render scan.ply -o - --format png | viewer), or name a file",
+            )),
+        };
+    }
     let shown = path.display();
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => {
@@ -95,9 +105,19 @@ pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
 
 /// Makes `path` a file of one JSON value.
 pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+    write(path, &json(path, value)?)
+}
+
+/// The text of a JSON file.
+pub fn json(path: &Path, value: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| Failure::exhausted(format!("{}: {error}", path.display())))?;
-    write(path, &format!("{text}\n"))
+    Ok(format!("{text}\n"))
+}
+
+/// As [`write`], also where an end was asked for: what was measured is kept.
+pub fn keep(path: &Path, text: &str) -> Result<(), Failure> {
+    interrupt::keeping(|| Ok(film::store(path, text.as_bytes())?))
 }
 
 fn write_failure(path: &Path, error: &io::Error, what: &str) -> Failure {

@@ -3,9 +3,9 @@
 use crate::args::{Overrides, ViewArgs};
 use crate::camera::CameraOptions;
 use crate::errors::Failure;
-use crate::memory;
 use crate::point_file::{ColorBy, PointFile};
 use crate::progress::Progress;
+use crate::{memory, source};
 use plan::{MapProjection, Plan, SceneImages, SensorView, Window};
 use points::{Column, Columns, Dropped, PointSet, ReadOptions, Upwards, Wanted, Watch};
 use scene::{Albedo, ImageFile, Object, Scene, Units, Up};
@@ -144,7 +144,8 @@ pub fn is_scene_file(path: &Path) -> bool {
 
 /// Whether a path is a scene file's.
 pub fn is_toml(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+    let is_named_so = |extension: &std::ffi::OsStr| extension.eq_ignore_ascii_case("toml");
+    path.extension().is_some_and(is_named_so) || source::is_scene(path)
 }
 
 /// Whether a path is that of an EXR, whose header has the scene that it was made from.
@@ -192,7 +193,10 @@ impl Input {
         let loaded = if is_exr(path) {
             Scene::of_picture(&scene_of_picture(path)?, path, &set, root)
         } else if is_scene_file(path) {
-            Scene::load_below(path, &set, root)
+            match source::scene_text(path) {
+                Some(text) => Scene::load_text(text, path, &set, root),
+                None => Scene::load_below(path, &set, root),
+            }
         } else {
             Scene::for_point_file(path, turned, &set)
         };
@@ -417,7 +421,7 @@ impl Input {
         crop: Option<Window>,
         progress: &Progress,
     ) -> Result<Plan, Failure> {
-        memory::require_points(sets.iter().map(|set| set.len() as u64).sum())?;
+        memory::require_points(sets.iter().map(|set| set.len() as u64).sum(), progress)?;
         let images = self.read_images(progress)?;
         self.note_units(sets, progress);
         let (scene, up) = self.upright(sets, progress)?;

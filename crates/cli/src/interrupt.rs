@@ -6,6 +6,7 @@
 //! never left behind.
 
 use crate::errors::{Exit, Failure};
+use crate::temporary;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::Duration;
 
@@ -32,7 +33,9 @@ pub fn install() -> Result<(), Failure> {
         }
         end();
     })
-    .map_err(|error| Failure::exhausted(format!("cannot handle interruptions: {error}")))
+    .map_err(|error| Failure::exhausted(format!(
+            "the thread that waits for interruptions cannot start: {error}; raise the limits of memory and processes"
+        )))
 }
 
 /// Whether an end was asked for.
@@ -73,6 +76,7 @@ pub fn finished() {
 
 fn end() -> ! {
     film::remove_unfinished();
+    temporary::remove_all();
     std::process::exit(i32::from(Exit::Interrupted.code()))
 }
 
@@ -82,6 +86,12 @@ pub fn writing<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failur
         let _writing = Counted::new(&WRITING);
         if requested() { Err(Failure::interrupted()) } else { work() }
     })
+}
+
+/// Runs work that writes a file of what there is, also where an end was asked for: the second signal waits for it.
+pub fn keeping<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    let _writing = Counted::new(&WRITING);
+    work()
 }
 
 /// Counts itself, also while a panic unwinds.

@@ -11,24 +11,36 @@ mod bench;
 mod camera;
 mod commands;
 mod console;
+mod ending;
 mod engine;
 mod errors;
 mod files;
 mod input;
 mod interrupt;
 mod legend;
+mod limits;
+mod log;
 mod memory;
 mod point_file;
 mod progress;
 mod provenance;
+mod source;
 mod stats;
+mod temporary;
+mod threads;
 
 use errors::{Exit, Failure};
 use std::process::ExitCode;
 
+/// Ends the process in good order where there is no memory.
+#[global_allocator]
+static ALLOCATOR: gpu::process::Allocator = gpu::process::Allocator;
+
 fn main() -> ExitCode {
+    log::follow(std::env::args_os());
+    ending::prepare();
     console::announce_panics();
-    let finished = std::panic::catch_unwind(|| interrupt::install().and_then(|()| run()));
+    let finished = std::panic::catch_unwind(run);
     let exit = match finished {
         Ok(Ok(exit)) => exit,
         Ok(Err(failure)) => {
@@ -38,12 +50,18 @@ fn main() -> ExitCode {
         // The hook has said what happened.
         Err(_) => Exit::Exhausted,
     };
+    temporary::remove_all();
     ExitCode::from(exit.code())
 }
 
 fn run() -> Result<Exit, Failure> {
     match args::parse() {
-        Ok(arguments) => commands::run(&arguments),
+        Ok(mut arguments) => {
+            // Before any other thread starts.
+            threads::start(arguments.threads);
+            interrupt::install()?;
+            commands::run(&mut arguments)
+        }
         // Also how clap answers --help and --version, which are no errors.
         Err(answer) => Ok(console::clap_answer(&answer)),
     }

@@ -33,7 +33,7 @@ pub use legend::{ColorBar, legend};
 pub use picture::{Film, Provenance, Window};
 pub use raster_read::{Raster, is_exr, read_raster};
 pub use srgb::{linear_from_srgb, srgb_byte};
-pub use store::{remove_unfinished, store};
+pub use store::{remove_unfinished, remove_unfinished_at_once, store};
 pub use tone::{Tone, ToneCurve};
 
 use std::ffi::OsStr;
@@ -108,13 +108,29 @@ pub fn write_styled(
     style: Style,
     path: &Path,
 ) -> Result<(), FilmError> {
+    store(path, &encode(film, provenance, style, FileFormat::from_path(path)?, path)?)
+}
+
+/// The bytes that [`write_styled`] makes a file of. `name` is for messages.
+///
+/// # Panics
+/// As [`write()`].
+///
+/// # Errors
+/// A picture that the format cannot hold.
+pub fn encode(
+    film: &Film,
+    provenance: &Provenance,
+    style: Style,
+    format: FileFormat,
+    name: &Path,
+) -> Result<Vec<u8>, FilmError> {
     film.assert_consistent();
-    let bytes = match FileFormat::from_path(path)? {
-        FileFormat::Exr => exr_write::encode(film, provenance, style.half, path)?,
-        FileFormat::Png => eight_bit::png(film, style.tone, path)?,
-        FileFormat::Jpeg => eight_bit::jpeg(film, style.tone, path)?,
-    };
-    store(path, &bytes)
+    match format {
+        FileFormat::Exr => exr_write::encode(film, provenance, style.half, name),
+        FileFormat::Png => eight_bit::png(film, style.tone, name),
+        FileFormat::Jpeg => eight_bit::jpeg(film, style.tone, name),
+    }
 }
 
 /// How many colour values of a film are finite and beyond [`HALF_MAX`], so that [`Style::half`] changes

@@ -58,6 +58,14 @@ pub fn remove_unfinished() {
     remove(&mut aside());
 }
 
+/// The same for a process that has no memory left or has crashed: where files are being written aside at this very
+/// moment, it waits for nobody.
+pub fn remove_unfinished_at_once() {
+    if let Ok(mut paths) = ASIDE.try_lock() {
+        remove(&mut paths);
+    }
+}
+
 fn remove(paths: &mut Vec<PathBuf>) {
     for path in paths.drain(..) {
         // It may have its name by now, and then it is whole.

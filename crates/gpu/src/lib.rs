@@ -27,6 +27,7 @@ mod image;
 mod instance;
 mod kernel;
 mod pipelines;
+pub mod process;
 mod queue;
 mod recorder;
 mod spirv;

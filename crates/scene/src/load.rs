@@ -41,9 +41,21 @@ impl Scene {
         overrides: &[String],
         root: Option<&Path>,
     ) -> Result<Scene, SceneError> {
-        let text = read_text(path)?;
+        Self::load_text(&read_text(path)?, path, overrides, root)
+    }
+
+    /// The same for text that is held already, as if it were read from `path`.
+    ///
+    /// # Errors
+    /// As [`Scene::load_below`].
+    pub fn load_text(
+        text: &str,
+        path: &Path,
+        overrides: &[String],
+        root: Option<&Path>,
+    ) -> Result<Scene, SceneError> {
         let folder = path.parent().unwrap_or(Path::new(""));
-        let source = Source { file: path, text: &text, overrides };
+        let source = Source { file: path, text, overrides };
         Self::with_files(&source, folder, root, false)
     }
 

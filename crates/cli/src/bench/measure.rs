@@ -10,7 +10,7 @@ use crate::errors::Failure;
 use crate::input::Input;
 use crate::progress::Progress;
 use crate::stats::{Measured, RaysPerSecond, Row, Spread, milliseconds, pixel_hash};
-use crate::{interrupt, memory};
+use crate::{interrupt, memory, temporary};
 use film::Film;
 use plan::Plan;
 use points::PointSet;
@@ -33,11 +33,8 @@ pub fn measure(
     interrupt::held(|| match case.made {
         None => timed(case, &case.input, engine, [runs, u32::from(on_cpu)], progress),
         Some(made) => {
-            memory::require_points(u64::from(made.count()))?;
-            let folder = tempfile::Builder::new()
-                .prefix("pointillist-bench-")
-                .tempdir()
-                .map_err(|error| Failure::exhausted(format!("temporary folder: {error}")))?;
+            memory::require_points(u64::from(made.count()), progress)?;
+            let folder = temporary::Folder::new("pointillist-bench-")?;
             let name = made.file_name();
             let path = folder.path().join(&name);
             generated::write(&path, made, progress)?;
@@ -58,7 +55,7 @@ fn timed(
     [runs, on_cpu]: [u32; 2],
     progress: &Progress,
 ) -> Result<(Row, Film), Failure> {
-    memory::require_picture(input.window(None)?, &[], 0)?;
+    memory::require_picture(input.window(None)?, &[], 0, progress)?;
     let started = Instant::now();
     let mut input = input.clone();
     let sets = input.read_points(progress)?;

@@ -3,6 +3,7 @@
 use crate::bench::changes::Comparison;
 use crate::engine::Engine;
 use crate::stats::Row;
+use crate::threads;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -18,7 +19,7 @@ pub struct Report {
     pub driver: String,
     /// The processor, or at least its architecture.
     pub cpu: String,
-    /// Threads that the processor offers to this process.
+    /// Threads that computed: as many as `--threads` says, or as the processor offers to this process.
     pub threads: Option<usize>,
     /// Version of pointillist.
     pub version: &'static str,
@@ -26,6 +27,9 @@ pub struct Report {
     pub commit: Option<&'static str>,
     /// Frames of each row, after one to warm up.
     pub runs: u32,
+    /// Whether all that was asked for was measured or skipped: not while the runner is at it, nor after an interruption or
+    /// a failure.
+    pub complete: bool,
     /// What was measured.
     pub rows: Vec<Row>,
     /// What was not.
@@ -52,10 +56,11 @@ impl Report {
             device: engine.name(),
             driver: engine.driver(),
             cpu: cpu(),
-            threads: std::thread::available_parallelism().ok().map(Into::into),
+            threads: Some(threads::count()),
             version: env!("CARGO_PKG_VERSION"),
             commit: option_env!("POINTILLIST_COMMIT"),
             runs,
+            complete: false,
             rows: Vec::new(),
             skipped: Vec::new(),
             comparison: None,

@@ -162,8 +162,9 @@ fn heading(report: &Report) -> String {
         1 => "1 run".to_owned(),
         runs => format!("{runs} runs"),
     };
+    let incomplete = if report.complete { "" } else { "; incomplete: the run ended early" };
     format!(
-        "{}{driver}; {}{threads}; pointillist {}{commit}; {runs} after one to warm up",
+        "{}{driver}; {}{threads}; pointillist {}{commit}; {runs} after one to warm up{incomplete}",
         report.device, report.cpu, report.version
     )
 }

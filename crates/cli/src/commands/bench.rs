@@ -11,8 +11,9 @@ use crate::engine::{Engine, with_engine};
 use crate::errors::{Exit, Failure};
 use crate::progress::Progress;
 use crate::stats::{Beside, PreparedOver, Row};
-use crate::{console, files};
+use crate::{console, files, interrupt};
 use film::Film;
+use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -41,25 +42,54 @@ pub fn run(args: &BenchArgs) -> Result<Exit, Failure> {
     inputs.extend(cases.suites.iter().chain(&args.compare).map(|path| path.as_path()));
     files::check_distinct(&outputs, &inputs)?;
 
-    let mut report = with_engine(&args.device, |engine| {
+    let mut report = with_engine(&args.device, &progress, |engine| {
         let mut report = Report::new(engine, args.runs);
-        for skipped in &cases.skipped {
-            skip(skipped.clone(), &mut report, &progress);
+        // Held, so that what was measured is shown before an interruption ends the process.
+        let timed = interrupt::held(|| time_all(args, &cases, engine, &mut report, &progress));
+        progress.clear();
+        if let (Err(_), false) = (&timed, report.rows.is_empty()) {
+            console::result(&table::text(&report))?;
         }
-        let mut last = None;
-        for (case, number) in cases.cases.iter().zip(1..) {
-            progress.task(&format!("{number}/{} {}", cases.cases.len(), case.name));
-            time(case, engine, args.cpu_preparation, (&mut report, &mut last), &progress)?;
-        }
-        Ok(report)
+        timed.map(|()| report)
     })?;
-    progress.clear();
+    report.complete = true;
     report.comparison = earlier.map(|earlier| earlier.compare(&report, 0.01 * args.tolerance));
     write(args, &report)?;
+    let outputs: Vec<String> = outputs.iter().map(|output| output.display().to_string()).collect();
+    let (rows, skipped) = (report.rows.len(), report.skipped.len());
+    progress.result_object(
+        &format!("{rows} rows measured, {skipped} skipped"),
+        json!({ "outputs": outputs, "device": report.device, "rows": rows, "skipped": skipped }),
+    );
+    console::result(&table::text(&report))?;
     match report.comparison {
         Some(comparison) if !comparison.pass => Ok(Exit::Difference),
         _ => Ok(Exit::Done),
     }
+}
+
+/// Times case after case. The files have each row as soon as it is measured: an interruption, a failure or a driver that
+/// crashes costs no earlier one.
+fn time_all(
+    args: &BenchArgs,
+    cases: &Cases,
+    engine: &Engine,
+    report: &mut Report,
+    progress: &Progress,
+) -> Result<(), Failure> {
+    for skipped in &cases.skipped {
+        skip(skipped.clone(), report, progress);
+    }
+    let mut last = None;
+    for (case, number) in cases.cases.iter().zip(1..) {
+        progress.task(&format!("{number}/{} {}", cases.cases.len(), case.name));
+        let rows = report.rows.len();
+        time(case, engine, args.cpu_preparation, (&mut *report, &mut last), progress)?;
+        if report.rows.len() > rows {
+            write(args, report)?;
+        }
+    }
+    Ok(())
 }
 
 /// Adds one row; or, where a suite asks for more than the device or the machine has, says so.
@@ -104,18 +134,18 @@ fn skip(skipped: Skipped, report: &mut Report, progress: &Progress) {
     report.skipped.push(skipped);
 }
 
-/// Files first: a terminal that is gone must not cost the results.
+/// Before anything is printed: a terminal that is gone must not cost the results.
 fn write(args: &BenchArgs, report: &Report) -> Result<(), Failure> {
     if let Some(path) = &args.json {
-        files::write_json(path, report)?;
+        files::keep(path, &files::json(path, report)?)?;
     }
     if let Some(path) = &args.markdown {
-        files::write(path, &table::markdown(report))?;
+        files::keep(path, &table::markdown(report))?;
     }
     if let Some(path) = &args.plot {
-        files::write(path, &plot::svg(report)?)?;
+        files::keep(path, &plot::svg(report)?)?;
     }
-    console::result(&table::text(report))
+    Ok(())
 }
 
 fn list() -> String {

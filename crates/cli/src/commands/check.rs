@@ -5,6 +5,7 @@ use crate::console;
 use crate::errors::Failure;
 use crate::input::{Input, SceneValues};
 use crate::progress::Progress;
+use serde_json::json;
 
 /// Loads the scene, reads its points and plans its render: what passes here does not fail there
 /// for the scene's sake.
@@ -19,5 +20,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
         1 => "1 object".to_owned(),
         count => format!("{count} objects"),
     };
-    console::result(&format!("{}: ok, {objects}\n", input.path.display()))
+    let line = format!("{}: ok, {objects}", input.path.display());
+    progress.result_object(&line, json!({ "objects": sets.len() }));
+    console::result(&format!("{line}\n"))
 }

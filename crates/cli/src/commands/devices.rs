@@ -1,43 +1,43 @@
 //! `devices`: what there is to render on.
 
-use crate::console;
-use crate::errors::Failure;
-use gpu::{DeviceInfo, GpuError, Instance, InstanceOptions};
+use crate::errors::{self, Failure};
+use crate::{console, ending, memory};
+use gpu::{DefaultDevice, DeviceInfo, GpuError, Instance, InstanceOptions};
 use std::fmt::Write;
 
 const REFERENCE: &str =
     "reference  the CPU without Vulkan, on all cores: --device reference always works\n";
 
-/// Lists the devices; fails, after saying what works nevertheless, where none is usable.
+/// Lists the devices, and says what renders where none is named: where none can be used, the CPU reference.
 pub fn run() -> Result<(), Failure> {
-    let listed = Instance::new(&InstanceOptions::default())
-        .and_then(|instance| Ok((instance.devices()?, instance.default_device())));
     let mut text = String::new();
-    let error = match listed {
-        Ok((devices, default)) => {
-            for device in &devices {
-                describe(&mut text, device);
-            }
-            match default {
-                Ok(default) => {
-                    // Writing to a string cannot fail; nor below.
-                    let _ = writeln!(text, "default    {}: {}", default.index, default.reason);
-                    None
-                }
-                Err(error) => Some(error),
-            }
-        }
-        Err(error) => Some(error),
+    let default = match memory::require_driver() {
+        Err(lacking) => Err(lacking.lines.join("; ")),
+        Ok(()) => listed(&mut text).map_err(|error| errors::chain(&error)),
     };
     // An error of the list has them already.
     if !text.is_empty() {
         for line in Instance::loader_errors() {
+            // Writing to a string cannot fail; nor below.
             let _ = writeln!(text, "not usable {line}");
         }
     }
     text.push_str(REFERENCE);
-    console::result(&text)?;
-    error.map_or(Ok(()), |error: GpuError| Err(Failure::no_device(&error)))
+    let _ = match default {
+        Ok(default) => writeln!(text, "default    {}: {}", default.index, default.reason),
+        Err(reason) => writeln!(text, "default    reference: {reason}"),
+    };
+    console::result(&text)
+}
+
+/// Describes all devices, and chooses the default of them.
+fn listed(text: &mut String) -> Result<DefaultDevice, GpuError> {
+    ending::driver_is_there();
+    let instance = Instance::new(&InstanceOptions::default())?;
+    for device in &instance.devices()? {
+        describe(text, device);
+    }
+    instance.default_device()
 }
 
 fn describe(text: &mut String, device: &DeviceInfo) {

@@ -7,6 +7,7 @@ use crate::progress::Progress;
 use crate::{files, interrupt, memory};
 use points::fill::NotFilled;
 use points::{PlyPoints, ReadOptions};
+use serde_json::json;
 use std::path::Path;
 
 /// Fills, and writes the file.
@@ -28,12 +29,15 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
     let filled = filled(&args.input, &set.positions, args.count, args.reach, &progress)?;
     drop(set);
     write(&args.output, &filled)?;
-    progress.note(&format!(
-        "{}: {surface} points, and {} inside -> {}",
-        args.input.display(),
-        args.count,
-        args.output.display()
-    ));
+    progress.result(
+        &format!(
+            "{}: {surface} points, and {} inside -> {}",
+            args.input.display(),
+            args.count,
+            args.output.display()
+        ),
+        json!({ "outputs": [args.output.display().to_string()] }),
+    );
     Ok(())
 }
 
@@ -45,7 +49,7 @@ pub fn filled(
     reach: f64,
     progress: &Progress,
 ) -> Result<PlyPoints, Failure> {
-    memory::require_points(surface.len() as u64 + u64::from(count))?;
+    memory::require_points(surface.len() as u64 + u64::from(count), progress)?;
     let filled = interrupt::held(|| {
         points::fill::filled(surface, count, reach, progress).map_err(|error| match error {
             NotFilled::Interrupted => Failure::interrupted(),

@@ -58,6 +58,8 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         input::note_points(&args.file, &summary.notes, summary.dropped, summary.points, &progress);
         if args.json { pretty(&summary.to_json()) } else { format!("{summary}\n") }
     };
+    progress.clear();
+    progress.result_object(&format!("{}: read", args.file.display()), Value::Null);
     drop(progress);
     console::result(&text)
 }

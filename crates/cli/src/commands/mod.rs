@@ -12,16 +12,25 @@ mod render;
 
 use crate::args::{Arguments, Command, SchemaArgs};
 use crate::bench::report;
-use crate::console;
 use crate::errors::{Exit, Failure};
+use crate::{console, source};
 
 /// Does what was asked for.
-pub fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    match &arguments.command {
-        Command::Render(args) => render::run(args)?,
+pub fn run(arguments: &mut Arguments) -> Result<Exit, Failure> {
+    match &mut arguments.command {
+        Command::Render(args) => {
+            args.scene = args.source.resolve(&args.scene)?;
+            render::run(args)?;
+        }
         Command::Bench(args) => return bench::run(args),
-        Command::Info(args) => info::run(args)?,
-        Command::Check(args) => check::run(args)?,
+        Command::Info(args) => {
+            args.file = source::resolve(&args.file, None, args.input_format.as_deref())?;
+            info::run(args)?;
+        }
+        Command::Check(args) => {
+            args.scene = args.source.resolve(&args.scene)?;
+            check::run(args)?;
+        }
         Command::Schema(args) => console::result(&format!("{:#}\n", schema(args)))?,
         Command::Fill(args) => fill::run(args)?,
         Command::Devices => devices::run()?,

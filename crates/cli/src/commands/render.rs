@@ -6,21 +6,26 @@ use crate::engine::{Built, Engine, Frame, with_engine};
 use crate::errors::Failure;
 use crate::input::{Input, SceneValues};
 use crate::progress::Progress;
+use crate::source::PIPE;
 use crate::stats::{Measured, Row};
-use crate::{files, interrupt, legend, memory, provenance};
+use crate::{console, files, interrupt, legend, memory, provenance};
 use film::{FileFormat, Film, Provenance, Style, Tone};
 use plan::{Diagnostic, Extra, Plan};
 use points::Watch;
+use serde_json::{Value, json};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Renders. Whatever can be checked is checked before points are read.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
-    let formats: Vec<FileFormat> = args
-        .outputs
-        .iter()
-        .map(|output| FileFormat::from_path(output))
-        .collect::<Result<_, _>>()?;
+    let formats: Vec<FileFormat> =
+        args.outputs.iter().map(|output| args.format_of(output)).collect::<Result<_, _>>()?;
+    let to_stdout = args.outputs.iter().any(|output| output == Path::new(PIPE));
+    if let (Some(_), false) = (args.format, to_stdout) {
+        return Err(Failure::usage(
+            "--format is for what is written to stdout, and files have their extension; add -o -, or leave it out",
+        ));
+    }
     let outputs: Vec<&Path> = args
         .outputs
         .iter()
@@ -44,9 +49,9 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let mut input =
         Input::load(&args.scene, &values, &args.view)?.colored_by(args.color.clone())?;
     let added = Added::of(args, &formats);
-    memory::require_picture(input.window(args.crop)?, &formats, added.planes())?;
-    files::check_distinct(&outputs, &input.files())?;
     let progress = Progress::new(&args.progress);
+    memory::require_picture(input.window(args.crop)?, &formats, added.planes(), &progress)?;
+    files::check_distinct(&outputs, &input.files())?;
     if added.planes() == 0 && !args.channels.is_empty() {
         progress.warn(
             "--channels is ignored, since only EXR files hold further channels; add \
@@ -62,7 +67,9 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if args.half && !formats.contains(&FileFormat::Exr) {
         progress.warn("--half is ignored, since it is for EXR files; add -o FILE.exr");
     }
-    with_engine(&args.device, |engine| render(args, &mut input, added, engine, &progress))
+    with_engine(&args.device, &progress, |engine| {
+        render(args, &mut input, added, engine, &progress)
+    })
 }
 
 /// What `--channels` adds.
@@ -107,8 +114,7 @@ fn render(
     let filtered_out = sets.iter().map(|set| set.filtered_out).sum();
     let mut plan = input.plan(&sets, args.crop, progress)?;
     (plan.diagnostics, plan.extras) = (added.diagnostics, added.extras);
-    let exr =
-        args.outputs.iter().any(|path| FileFormat::from_path(path).ok() == Some(FileFormat::Exr));
+    let exr = args.outputs.iter().any(|path| args.format_of(path).ok() == Some(FileFormat::Exr));
     plan.aovs = exr; // no other file holds them
     let legend = args.legend.as_ref().map(|path| Ok::<_, Failure>((path, legend::of(&plan)?)));
     let legend = legend.transpose()?;
@@ -148,7 +154,11 @@ fn render(
         files::write_json(path, &row)?;
     }
     interrupt::finished();
-    progress.note(&summary(args, &plan, engine, &frame, [read, planned, built.duration]));
+    let times = [read, planned, built.duration];
+    progress.result(
+        &summary(args, &plan, engine, &frame, times),
+        fields(args, &plan, engine, &frame, times),
+    );
     Ok(())
 }
 
@@ -162,7 +172,13 @@ fn write_pictures(
     progress.stage("writing pictures", args.outputs.len() as u64);
     for (output, written) in args.outputs.iter().zip(1..) {
         let film = &frame.film;
-        interrupt::writing(|| Ok(film::write_styled(film, provenance, style, output)?))?;
+        if output == Path::new(PIPE) {
+            let format = args.format_of(output)?;
+            // Not held: a reader that takes nothing must not hold up an interruption.
+            console::result_bytes(&film::encode(film, provenance, style, format, output)?)?;
+        } else {
+            interrupt::writing(|| Ok(film::write_styled(film, provenance, style, output)?))?;
+        }
         progress.done(written);
     }
     progress.clear();
@@ -201,6 +217,32 @@ fn warn_of_missing_surfaces(plan: &Plan, built: &Built, progress: &Progress) {
             progress.warn(&format!("object '{name}': none of its {} points {why}", outcomes.len()));
         }
     }
+}
+
+/// The same for `--log json`.
+fn fields(
+    args: &RenderArgs,
+    plan: &Plan,
+    engine: &Engine,
+    frame: &Frame,
+    [read, planned, built]: [Duration; 3],
+) -> Value {
+    let outputs: Vec<String> =
+        args.outputs.iter().chain(&args.stats).map(|output| output.display().to_string()).collect();
+    let seconds = json!({
+        "read": read.as_secs_f64(),
+        "plan": planned.as_secs_f64(),
+        "build": built.as_secs_f64(),
+        "trace": frame.trace.as_secs_f64(),
+    });
+    json!({
+        "outputs": outputs,
+        "device": engine.name(),
+        "points": plan.point_count,
+        "size": plan.window.size,
+        "passes": frame.passes,
+        "seconds": seconds,
+    })
 }
 
 /// One line of what was done and how long it took.
