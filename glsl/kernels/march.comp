@@ -361,17 +361,16 @@ void main() {
                 march.color.z = is_here ? 1.0 : march.color.z;
                 march.color.y = add_to(march.color.y, counted, march.color_lost.y);
             }
-            uint integrals = emission && shows ? 1u : 0u;
-            while (integrals > 0u) {
-                --integrals;
-                Shown seen = mean_of(volume, from, to);
+            bool counts_here = emission && shows;
+            Shown seen = mean_of(volume, counts_here ? from : 0.0, counts_here ? to : 0.0);
 #ifdef LIT
-                vec3 mean_light = both ? 0.5 * (light_there + light) : (is_here ? light : light_there);
-                seen.scattering.xyz *= mean_light;
+            vec3 mean_light = both ? 0.5 * (light_there + light) : (is_here ? light : light_there);
+            seen.scattering.xyz *= mean_light;
 #endif
-                march.step_color += share * (seen.scattering.xyz + seen.emission);
-                march.step_extinction += share * seen.scattering.w;
-            }
+            vec3 color_now = march.step_color + share * (seen.scattering.xyz + seen.emission);
+            float extinction_now = march.step_extinction + share * seen.scattering.w;
+            march.step_color = counts_here ? color_now : march.step_color;
+            march.step_extinction = counts_here ? extinction_now : march.step_extinction;
             march.numerator = 0.0;
             march.denominator = 0.0;
             march.row = 0u;
@@ -393,11 +392,11 @@ void main() {
             }
             bool again = march.state == 3u;
             vec3 sent = through * (lengths * march.step_color);
-            uint sends = emits && !again ? 1u : 0u;
-            while (sends > 0u) {
-                --sends;
-                march.color = add_to(march.color, sent, march.color_lost);
-            }
+            bool sends = emits && !again;
+            vec3 color_lost = march.color_lost;
+            vec3 color = add_to(march.color, sent, color_lost);
+            march.color = sends ? color : march.color;
+            march.color_lost = sends ? color_lost : march.color_lost;
             // Where the light is lost that is looked for: a place within this step.
             float missing = -march.along - march.depth;
             bool found = again && last && step_depth > 0.0 && step_depth >= missing;
@@ -406,11 +405,11 @@ void main() {
 #else
             bool found = false;
 #endif
-            uint adds = last && step_depth > 0.0 ? 1u : 0u;
-            while (adds > 0u) {
-                --adds;
-                march.depth = add_to(march.depth, step_depth, march.depth_lost);
-            }
+            bool adds = last && step_depth > 0.0;
+            float depth_lost = march.depth_lost;
+            float depth = add_to(march.depth, step_depth, depth_lost);
+            march.depth = adds ? depth : march.depth;
+            march.depth_lost = adds ? depth_lost : march.depth_lost;
             march.step_color = last ? vec3(0.0) : march.step_color;
             march.step_extinction = last ? 0.0 : march.step_extinction;
             march.volume = last ? 0u : march.volume;

@@ -611,7 +611,8 @@ struct VolumeInfo {      // 96 bytes
     vec3 high;           // 64  of the box, whose lowest corner is the grid's
     uint mode;           // 76  VOLUME_EMISSION and so on; maximum, average, integral: the scene's only volume
     float iso;           // 80  scalar on an isosurface
-    uint slot;           // 84  of the polynomial that stands for an isosurface, behind those of all points
+    uint slot;           // 84  of the polynomial that stands for an isosurface, behind those of all points; of other
+                         //     modes, 1 where anything has an emission
     uint refracts;       // 88  1: an isosurface of glass, which rays are inside or outside of
     uint shading;        // 92  VOLUME_EMITS and so on
 };

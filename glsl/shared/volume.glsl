@@ -189,18 +189,14 @@ struct Shown {
     vec3 emission;
 };
 
-// How many stops are at or below each of two scalars, the lower first: 0 below the first stop.
-uvec2 pieces_of(VolumeInfo volume, vec2 scalars) {
-    uvec2 low = uvec2(0u), high = uvec2(volume.stop_count);
-    while (low.x < high.x || low.y < high.y) {
-        uvec2 middle = min((low + high) / 2u, uvec2(volume.stop_count - 1u));
-        vec2 values = vec2(value_of_stop(volume.first_stop + middle.x).x, value_of_stop(volume.first_stop + middle.y).x);
-        bvec2 open = lessThan(low, high);
-        bvec2 above = greaterThan(values, scalars);
-        high.x = open.x && above.x ? middle.x : high.x;
-        high.y = open.y && above.y ? middle.y : high.y;
-        low.x = open.x && !above.x ? middle.x + 1u : low.x;
-        low.y = open.y && !above.y ? middle.y + 1u : low.y;
+// How many stops are at or below a scalar, of which so many are known to be.
+uint piece_of(VolumeInfo volume, float scalar, uint known) {
+    uint low = known, high = volume.stop_count;
+    while (low < high) {
+        uint middle = (low + high) / 2u;
+        bool above = value_of_stop(volume.first_stop + middle).x > scalar;
+        high = above ? middle : high;
+        low = above ? low : middle + 1u;
     }
     return low;
 }
@@ -210,35 +206,44 @@ uvec2 pieces_of(VolumeInfo volume, vec2 scalars) {
 Shown mean_within(VolumeInfo volume, uint piece, float a, float b) {
     uint low = volume.first_stop + max(piece, 1u) - 1u;
     uint high = volume.first_stop + min(piece, volume.stop_count - 1u);
-    vec4 value_low = value_of_stop(low), value_high = value_of_stop(high); // and the emissions
-    float span = value_high.x - value_low.x;
+    float value_low = value_of_stop(low).x;
+    float span = value_of_stop(high).x - value_low;
     float divisor = span > 0.0 ? span : 1.0;
-    float from = span > 0.0 ? min(max((a - value_low.x) / divisor, 0.0), 1.0) : 0.0;
-    float to = span > 0.0 ? min(max((b - value_low.x) / divisor, 0.0), 1.0) : 0.0;
+    float from = span > 0.0 ? min(max((a - value_low) / divisor, 0.0), 1.0) : 0.0;
+    float to = span > 0.0 ? min(max((b - value_low) / divisor, 0.0), 1.0) : 0.0;
     float middle = 0.5 * (from + to), width = to - from;
     vec4 color_low = color_of_stop(low);
     vec4 change = color_of_stop(high) - color_low;
     vec4 color = color_low + middle * change;
     float bend = (width * width) * 8.33333333e-2;
     vec3 scattering = color.xyz * color.w + (bend * change.w) * change.xyz;
-    return Shown(vec4(scattering, color.w), value_low.yzw + middle * (value_high.yzw - value_low.yzw));
+    vec3 emission = vec3(0.0);
+    uint glows = volume.slot; // most do not, and need no more texels
+    while (glows > 0u) {
+        glows = 0u;
+        vec3 emission_low = value_of_stop(low).yzw;
+        emission = emission_low + middle * (value_of_stop(high).yzw - emission_low);
+    }
+    return Shown(vec4(scattering, color.w), emission);
 }
 
 // The mean of the transfer function over all scalars from one to another: pre-integration (Engel et al. 2001), exact
 // between stops. What lies between the outer two pieces comes from integrals that the plan made, in two floats each.
 Shown mean_of(VolumeInfo volume, float a, float b) {
     float low = min(a, b), high = max(a, b);
-    uvec2 pieces = pieces_of(volume, vec2(low, high));
-    bool several = pieces.x < pieces.y;
-    uint first = volume.first_stop + min(pieces.x, volume.stop_count - 1u); // the first stop above the lower scalar
-    float end = several ? value_of_stop(first).x : high;
-    Shown mean = mean_within(volume, pieces.x, low, end);
+    uint piece = piece_of(volume, low, 0u);
+    uint first = volume.first_stop + min(piece, volume.stop_count - 1u); // the first stop above the lower scalar
+    float stop = value_of_stop(first).x;
+    bool several = piece < volume.stop_count && stop <= high;
+    float end = several ? stop : high;
+    Shown mean = mean_within(volume, piece, low, end);
     uint others = several ? 1u : 0u;
     while (others > 0u) {
         --others;
-        uint last = volume.first_stop + pieces.y - 1u; // the last stop not above the higher one
+        uint upper_piece = piece_of(volume, high, piece + 1u);
+        uint last = volume.first_stop + upper_piece - 1u; // the last stop not above the higher one
         float begin = value_of_stop(last).x;
-        Shown upper = mean_within(volume, pieces.y, begin, high);
+        Shown upper = mean_within(volume, upper_piece, begin, high);
         float lower_part = end - low, upper_part = high - begin, inverse = 1.0 / (high - low);
         vec4 scattering = (integral_to(last, 2u) - integral_to(first, 2u)) + (integral_to(last, 3u) - integral_to(first, 3u));
         vec4 emission = (integral_to(last, 4u) - integral_to(first, 4u)) + (integral_to(last, 5u) - integral_to(first, 5u));

@@ -3,6 +3,7 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "measured figures, for whoever asks with --nocapture")]
 
+use film::Film;
 use harness::{
     Bench, assert_same_bits, assert_same_film, plan_of, random, render_twin, set_of, with_attribute,
 };
@@ -55,6 +56,77 @@ fn shells(range: [f64; 2], gradient: f64, depth: f64) -> String {
 fn range_of(set: &PointSet, name: &str) -> [f64; 2] {
     let values = || set.attribute(name).expect("values").iter();
     [values().fold(f64::MAX, f64::min), values().fold(f64::MIN, f64::max)]
+}
+
+/// How far the pixels that show something in either are apart, in the order of that.
+fn apart(a: &Film, b: &Film) -> Vec<f32> {
+    let both = a.color.iter().zip(&b.color);
+    let mut apart: Vec<f32> = both
+        .filter(|(a, b)| a[3] > 1e-3 || b[3] > 1e-3)
+        .map(|(a, b)| (0..4).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max))
+        .collect();
+    apart.sort_by(f32::total_cmp);
+    apart
+}
+
+/// The step that the plan chose, and the picture with one 25 times finer.
+fn against_finer_steps(name: &str, text: &str, set: &PointSet, limit: f32) {
+    let bench = Bench::open();
+    let plan = plan_of(text, std::slice::from_ref(set));
+    assert!(plan.long_steps.is_empty(), "{:?}", plan.long_steps);
+    let chosen = bench.render(&plan);
+    assert_same_bits(name, &chosen, &render_twin(&plan));
+    let mut finer = plan_of(text, std::slice::from_ref(set));
+    finer.volumes.step /= 25.0;
+    let apart = apart(&chosen.film, &bench.render(&finer).film);
+    let [median, p95] = [50, 95].map(|of| apart[apart.len() * of / 100]);
+    println!("{name}: {} pixels, median {median:.4}, 95 % {p95:.4}", apart.len());
+    assert!(apart.len() > 300, "{name}: {} pixels show something", apart.len());
+    assert!(p95 < limit, "{name}: {p95}");
+}
+
+#[test]
+fn shells_of_three_thousandths_have_no_rings_at_the_automatic_step() {
+    let set = ball(20_000);
+    let transfer = shells(range_of(&set, "s"), 1.0, 0.7);
+    let of = |keys: &str| {
+        format!(
+            "{VIEW}[[objects]]\npoints = \"ball.ply\"\n[objects.volume]\nscalar = \"s\"\n{keys}{transfer}"
+        )
+    };
+    // Weights that end at e^-5, not at e^-2: where points come into reach, the field itself jumps by less than a shell.
+    against_finer_steps("ball", &of("radius = 0.2\nsmoothing = 0.004\n"), &set, 0.05);
+    against_finer_steps("ball, wide", &of("radius = 0.3\nsmoothing = 0.009\n"), &set, 0.05);
+}
+
+/// Particles of smoothed particle hydrodynamics, whose density falls off from the middle.
+#[test]
+fn shells_of_particles_have_no_rings_at_the_automatic_step() {
+    let mut seed = 5;
+    let mut positions: Vec<[f64; 3]> = Vec::new();
+    while positions.len() < 6_000 {
+        let p = [0; 3].map(|_| 2.0 * random(&mut seed) - 1.0);
+        let square = p.iter().map(|x| x * x).sum::<f64>();
+        if random(&mut seed) < (-4.0 * square).exp() {
+            positions.push(p);
+        }
+    }
+    // Some 300 particles in reach in the middle, so that the density is smooth.
+    let set = with_attribute(set_of(positions), "h", |_| 0.1);
+    let set = with_attribute(set, "rho", |_| 1.0);
+    let keys = "kernel = \"sph\"\nsmoothing_length = \"h\"\nmass = 1.0\n";
+    let text = |transfer: &str| {
+        format!(
+            "{VIEW}[[objects]]\npoints = \"gas.ply\"\n[objects.volume]\nscalar = \"rho\"\n{keys}{transfer}"
+        )
+    };
+    // The density of 6000 particles of mass 1 with a Gaussian of this width: 6000 (4/π)^1.5 in the middle.
+    let most = 6_000.0 * (4.0 / std::f64::consts::PI).powf(1.5);
+    let text =
+        |transfer: &str| text(transfer).replace("vertical_fov = 34.0", "vertical_fov = 22.0");
+    // Particles at random make a density that is rough on the scale of h, of which the step is a half.
+    let transfer = shells([0.0, most], 1.2 * most, 2.0);
+    against_finer_steps("particles", &text(&transfer), &set, 0.1);
 }
 
 /// Functions of sharp peaks and of many decades: the mean between two scalars, by integrals of two floats, against the

@@ -1185,7 +1185,8 @@ pub struct VolumeInfo {
     pub mode: u32,
     /// Scalar on an isosurface.
     pub iso: f32,
-    /// Of the polynomial that stands for an isosurface, behind those of all points.
+    /// Of the polynomial that stands for an isosurface, behind those of all points; of other modes, 1 where anything has an
+    /// emission.
     pub slot: u32,
     /// 1: an isosurface of glass, which rays are inside or outside of.
     pub refracts: u32,

@@ -232,6 +232,10 @@ fn is_whole(info: &VolumeInfo) -> bool {
     [VOLUME_MAXIMUM, VOLUME_AVERAGE, VOLUME_INTEGRAL].contains(&info.mode)
 }
 
+fn has_emission(stop: &VolumeStop) -> bool {
+    stop.emission != [0.0; 3]
+}
+
 /// Lengths of a volume as they are, given or chosen.
 struct Lengths {
     /// ρ, scene units squared.
@@ -421,7 +425,7 @@ impl Volumes {
                 VolumeMode::Isosurface(iso) => iso as f32,
                 _ => 0.0,
             },
-            slot: 0,
+            slot: u32::from(self.stops[first_stop as usize..].iter().any(has_emission)),
             refracts: u32::from(
                 matches!(volume.mode, VolumeMode::Isosurface(_))
                     && matches!(object.material.kind, MaterialKind::Glass { .. }),
@@ -546,7 +550,7 @@ impl Volumes {
         let (low, high) = (low - margin, high + margin);
         let first = info.first_stop as usize;
         let stops = &self.stops[first..first + info.stop_count as usize];
-        let sends = |stop: &VolumeStop| stop.extinction > 0.0 || stop.emission != [0.0; 3];
+        let sends = |stop: &VolumeStop| stop.extinction > 0.0 || has_emission(stop);
         let inside = stops.iter().any(|s| sends(s) && s.value >= low && s.value <= high);
         // Linear between stops: only its ends, and what the outer stops mean beyond them.
         let pieces = stops.windows(2).any(|pair| {
