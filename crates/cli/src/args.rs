@@ -98,6 +98,9 @@ pub struct RenderArgs {
     /// Write R, G, B, A and N of EXR files in 16 bits instead of 32; all other channels stay
     #[arg(long)]
     pub half: bool,
+    /// Take warnings for errors: exit with 2, before rendering where they are known by then
+    #[arg(long)]
+    pub strict: bool,
     #[command(flatten)]
     pub view: ViewArgs,
     /// What the columns of a point file are, from the first on, with commas between: x,y,z,_,red,green,blue;
@@ -323,6 +326,9 @@ pub struct CheckArgs {
     /// Folder that the scene's files are in now: paths are looked for below it, as written or by their last parts
     #[arg(long, value_name = "FOLDER")]
     pub root: Option<PathBuf>,
+    /// Take warnings for errors: exit with 2
+    #[arg(long)]
+    pub strict: bool,
     #[command(flatten)]
     pub view: ViewArgs,
     #[command(flatten)]

@@ -17,9 +17,14 @@ pub struct CameraOptions {
     view: Option<ViewFrom>,
     ortho: bool,
     from: Option<Header>,
+    /// With `--ortho`, the height that `--set` gives.
+    height: Option<f64>,
     /// Keys of the camera that `--set` gives, with what was typed.
     set: Vec<(String, String)>,
 }
+
+/// How `--set` gives the height of an orthographic camera.
+const HEIGHT: &str = "camera.height";
 
 /// The camera of another picture.
 #[derive(Debug, Clone)]
@@ -39,6 +44,7 @@ impl CameraOptions {
             view: args.view,
             ortho: args.ortho,
             from: None,
+            height: None,
             set: camera_keys_set(set),
         };
         let from =
@@ -73,6 +79,23 @@ impl CameraOptions {
         Ok(Self { from, ..options })
     }
 
+    /// The overrides but for the height of a camera that only `--ortho` makes orthographic, which is kept for it.
+    pub fn without_height(&mut self, set: Vec<String>) -> Result<Vec<String>, Failure> {
+        if !self.ortho {
+            return Ok(set);
+        }
+        let value_of = |text: &str| {
+            let (path, value) = text.split_once('=')?;
+            (path.trim() == HEIGHT).then(|| value.trim().to_owned())
+        };
+        for (text, value) in set.iter().filter_map(|text| Some((text, value_of(text)?))) {
+            let camera = format!("[camera]\nprojection = \"orthographic\"\nheight = {value}\n");
+            let keys = CameraKeys::from_toml(&camera, Path::new(&format!("--set {text}")))?;
+            self.height = keys.height;
+        }
+        Ok(set.into_iter().filter(|text| value_of(text).is_none()).collect())
+    }
+
     /// Puts the camera that the options mean into a scene, and fails where `--up` meets a camera that says what is up.
     pub fn apply(&self, scene: &mut Scene, path: &Path, is_scene: bool) -> Result<(), Failure> {
         let is_set = |name: &str| self.set.iter().any(|(known, _)| known == name);
@@ -94,6 +117,7 @@ impl CameraOptions {
             }
             (keys.is_orthographic, keys.vertical_fov) = (true, None);
         }
+        keys.height = self.height.or(keys.height);
         if let Some(view) = self.view {
             (keys.view, keys.eye) = (Some(view), None);
             // What belongs to where the scene's camera was.

@@ -186,7 +186,8 @@ impl Input {
     /// Loads and checks a scene file, or makes the scene that a point file means. Reads no points.
     pub fn load(path: &Path, values: &SceneValues, view: &ViewArgs) -> Result<Self, Failure> {
         let set = values.as_set();
-        let options = CameraOptions::new(view, &set)?;
+        let mut options = CameraOptions::new(view, &set)?;
+        let set = options.without_height(set)?;
         let turned = options.up.map_or(Up::Y, Up::from);
         let root = values.root.as_deref();
         check_root(root, path)?;

@@ -5,12 +5,14 @@
 //! same thread says so in a line, wherever stderr leads.
 
 use crate::args::{ProgressArgs, ProgressWhen};
+use crate::errors::Failure;
 use crate::log::{self, Level};
 use crate::{console, ending, interrupt};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use points::Watch;
 use serde_json::{Value, json};
 use std::io::{IsTerminal, stderr};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
@@ -28,6 +30,7 @@ pub struct Progress {
     shared: Arc<Shared>,
     drawing: Option<JoinHandle<()>>,
     quiet: bool,
+    warnings: AtomicUsize,
     verbose: bool,
 }
 
@@ -86,7 +89,13 @@ impl Progress {
             // Where the system has no thread for it, nothing is shown.
             Builder::new().spawn(move || shared.draw_until_closed()).ok()
         });
-        Self { shared, drawing: drawing.flatten(), quiet: args.quiet, verbose: args.verbose }
+        Self {
+            shared,
+            drawing: drawing.flatten(),
+            quiet: args.quiet,
+            warnings: AtomicUsize::new(0),
+            verbose: args.verbose,
+        }
     }
 
     /// Ends the stage: nothing of it stays on a terminal.
@@ -108,7 +117,19 @@ impl Progress {
 
     /// Warns on stderr, unless `--quiet`, of a picture that may not be what was meant. `line` says what to do.
     pub fn warn(&self, line: &str) {
+        self.warnings.fetch_add(1, Ordering::Relaxed);
         self.say(Level::Warning, "warning", line, Value::Null);
+    }
+
+    /// Fails where `--strict` is given and anything was warned of, also under `--quiet`; `what` says what became of the
+    /// work.
+    pub fn refuse_warnings(&self, is_strict: bool, what: &str) -> Result<(), Failure> {
+        let count = match self.warnings.load(Ordering::Relaxed) {
+            count if is_strict && count > 0 => count,
+            _ => return Ok(()),
+        };
+        let warnings = if count == 1 { "warning" } else { "warnings" };
+        Err(Failure::usage(format!("--strict: {count} {warnings}{what}")))
     }
 
     /// Says something on stderr, if `--verbose` asks for it.

@@ -596,7 +596,7 @@ fn grid_over(points: &[(VolumePoint, f32)], radius: f32) -> (GridInfo, [f32; 3])
     (grid, high)
 }
 
-fn cell_of(grid: &GridInfo, position: [f32; 3]) -> usize {
+pub(crate) fn cell_of(grid: &GridInfo, position: [f32; 3]) -> usize {
     let at = [0, 1, 2].map(|axis| {
         let cell = ((position[axis] - grid.origin[axis]) * grid.inverse_edge).floor();
         (cell.max(0.0) as usize).min(grid.resolution[axis] as usize - 1)

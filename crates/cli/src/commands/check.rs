@@ -15,7 +15,11 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     let mut input = Input::load(&args.scene, &values, &args.view)?;
     let progress = Progress::new(&args.progress);
     let sets = input.read_points(&progress)?;
-    input.plan(&sets, None, &progress)?;
+    let plan = input.plan(&sets, None, &progress)?;
+    for line in plan::nothing_seen(&input.scene, &sets, &plan) {
+        progress.warn(&line);
+    }
+    progress.refuse_warnings(args.strict, ", which render would give too")?;
     let objects = match sets.len() {
         1 => "1 object".to_owned(),
         count => format!("{count} objects"),

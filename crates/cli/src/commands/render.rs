@@ -122,6 +122,11 @@ fn render(
     for (name, count) in plan.names.iter().zip(&plan.isolated).filter(|(_, count)| **count > 0) {
         progress.note(&format!("object '{name}': dropped {count} isolated points"));
     }
+    let nothing = plan::nothing_seen(&input.scene, &sets, &plan);
+    for line in &nothing {
+        progress.warn(line);
+    }
+    progress.refuse_warnings(args.strict, ", and nothing was rendered")?;
     let provenance = exr.then(|| provenance::of(&plan, input, &sets, engine));
     drop(sets);
     let planned = started.elapsed() - read;
@@ -129,6 +134,11 @@ fn render(
     let frame = built.frame(&plan, progress)?;
     let wall = started.elapsed();
     warn_of_missing_surfaces(&plan, &built, progress);
+    // Of a part that was asked for, or where it is known why, nothing is no surprise.
+    let blank = plan::blank(&frame.film).filter(|_| nothing.is_empty() && args.crop.is_none());
+    if let Some(line) = blank {
+        progress.warn(&line);
+    }
 
     let provenance = provenance.as_ref().unwrap_or(plan.provenance());
     if exr && args.half {
@@ -159,7 +169,7 @@ fn render(
         &summary(args, &plan, engine, &frame, times),
         fields(args, &plan, engine, &frame, times),
     );
-    Ok(())
+    progress.refuse_warnings(args.strict, " of the picture, which was written")
 }
 
 fn write_pictures(

@@ -23,6 +23,7 @@ mod legend;
 mod log;
 mod meant;
 mod memory;
+mod nothing;
 mod pipes;
 mod points;
 mod render;

@@ -1,0 +1,224 @@
+//! Scenes that render without an error and show nothing: what is black, one colour, or empty for a reason that is known
+//! before a ray is traced, and what to do about it. What is named here is certain; what is only likely is not.
+//!
+//! [`blank`] judges the finished picture, and catches what only rays find out.
+
+mod sight;
+mod volumes;
+
+use crate::Plan;
+use crate::crossings::votes;
+use crate::shapes::surface_slots;
+use kernels::layout::{
+    LIGHT_POINT, MATERIAL_DIFFUSE, NONE, PERSPECTIVE, VOLUME_EMITS, VOLUME_ISOSURFACE,
+};
+use points::PointSet;
+use scene::{MaterialKind, Scene};
+use std::sync::Arc;
+
+/// Point lights of which it is asked whether a surface is around them.
+const MOST_LIGHTS: usize = 8;
+
+/// Why the picture of a plan would show nothing, or nothing of an object: a sentence each, which says what to do. `scene`
+/// and `sets` are what the plan was made from.
+#[must_use]
+pub fn nothing_seen(scene: &Scene, sets: &[Arc<PointSet>], plan: &Plan) -> Vec<String> {
+    let of = Asked { scene, sets, plan };
+    let whole = [
+        of.is_unlit(),
+        of.is_enclosed(),
+        of.is_one_color(),
+        of.has_no_bounces(),
+        sight::is_out_of_sight(&of),
+    ];
+    let mut found: Vec<String> = whole.into_iter().flatten().collect();
+    found.extend(volumes::without_values(&of));
+    found.extend(volumes::of_skins(&of));
+    found.extend(sight::too_small(&of));
+    found
+}
+
+/// What is asked about.
+struct Asked<'a> {
+    scene: &'a Scene,
+    sets: &'a [Arc<PointSet>],
+    plan: &'a Plan,
+}
+
+impl Asked<'_> {
+    fn name(&self, object: usize) -> &str {
+        &self.plan.names[object]
+    }
+
+    /// Whether an object has a surface, of whatever kind.
+    fn has_surface(&self, object: usize) -> bool {
+        let is_own = |info: &kernels::layout::VolumeInfo| info.object as usize == object;
+        let isosurface = || {
+            self.plan
+                .volumes
+                .infos
+                .iter()
+                .any(|info| is_own(info) && info.mode == VOLUME_ISOSURFACE)
+        };
+        self.plan.cloud.objects[object].count > 0 || isosurface()
+    }
+
+    /// The first object that is black without light.
+    fn needs_light(&self) -> Option<usize> {
+        let scatters = |object: usize| {
+            let volumes = self.plan.volumes.infos.iter();
+            let mut own = volumes.filter(|info| info.object as usize == object);
+            own.any(|info| info.mode != VOLUME_ISOSURFACE && info.shading != VOLUME_EMITS)
+        };
+        let is_diffuse = |object: usize| {
+            let info = &self.plan.objects[object];
+            let colored = info.first_color != NONE || info.texture != NONE;
+            info.material == MATERIAL_DIFFUSE && (colored || info.albedo != [0.0; 3])
+        };
+        (0..self.plan.objects.len())
+            .find(|&object| scatters(object) || self.has_surface(object) && is_diffuse(object))
+    }
+
+    fn is_unlit(&self) -> Option<String> {
+        let object = self.needs_light()?;
+        if self.plan.lights.iter().any(|light| light.strength.iter().any(|x| *x > 0.0)) {
+            return None;
+        }
+        let (why, advice) = match self.plan.lights.is_empty() {
+            true => (
+                "there are no lights",
+                "add [[lights]] with kind = \"headlight\" and at_target = [1, 1, 1]",
+            ),
+            false => (
+                "the irradiance, intensity or at_target of every light is 0",
+                "raise that of one, e.g. to [1, 1, 1]",
+            ),
+        };
+        Some(format!(
+            "object '{}' is black: {why}, and the background lights nothing; {advice}",
+            self.name(object)
+        ))
+    }
+
+    /// Whether every light is closed in by a surface that the eye is outside.
+    fn is_enclosed(&self) -> Option<String> {
+        self.needs_light()?;
+        let plan = self.plan;
+        let shining = || plan.lights.iter().filter(|light| light.strength.iter().any(|x| *x > 0.0));
+        let are_points = shining().all(|light| light.kind == LIGHT_POINT);
+        if !(are_points
+            && plan.camera.projection == PERSPECTIVE
+            && (1..=MOST_LIGHTS).contains(&shining().count()))
+        {
+            return None;
+        }
+        let around = |object: usize, place: [f32; 3]| {
+            let slots = surface_slots(&plan.cloud, &plan.shapes, object);
+            let votes = votes(&plan.cloud.points[slots.range()], place.map(f64::from));
+            votes.is_clear().then(|| votes.says_inside())
+        };
+        let closes = |object: &usize| {
+            let is_opaque = plan.objects[*object].material == MATERIAL_DIFFUSE;
+            is_opaque
+                && shining().all(|light| around(*object, light.vector) == Some(true))
+                && around(*object, plan.camera.eye) == Some(false)
+        };
+        let object = (0..plan.objects.len()).find(closes)?;
+        Some(format!(
+            "object '{}' encloses every light, and the camera is outside, where it is dark; move lights.0.position \
+             outside, or add a light of kind \"headlight\"",
+            self.name(object)
+        ))
+    }
+
+    /// Whether all that rays meet leads to one background of one colour, and changes nothing of it.
+    fn is_one_color(&self) -> Option<String> {
+        let (scene, plan) = (self.scene, self.plan);
+        if scene.background.environment.is_some() || scene.image.transparent {
+            return None;
+        }
+        let is_black = scene.background.color == [0.0; 3];
+        let marched = plan.volumes.infos.iter().any(|info| info.mode != VOLUME_ISOSURFACE);
+        let shows = |object: &usize| match scene.objects[*object].material.kind {
+            MaterialKind::Diffuse => true,
+            MaterialKind::Mirror { reflectance } => !is_black && reflectance != [1.0; 3],
+            MaterialKind::Glass { absorption, .. } => !is_black && absorption != [0.0; 3],
+        };
+        let surfaces: Vec<usize> =
+            (0..plan.objects.len()).filter(|&object| self.has_surface(object)).collect();
+        if marched || surfaces.is_empty() || surfaces.iter().any(shows) {
+            return None;
+        }
+        let name = self.name(surfaces[0]);
+        let what = match scene.objects[surfaces[0]].material.kind {
+            MaterialKind::Mirror { .. } => "a mirror",
+            _ => "glass",
+        };
+        let color = if is_black { "a black background" } else { "a background of one colour" };
+        Some(format!(
+            "object '{name}' is not seen: it is {what} before {color}, and there is nothing else to see in it; give \
+             background.environment an image, or add an object of another material"
+        ))
+    }
+
+    /// Whether rays end where they would begin to show something.
+    fn has_no_bounces(&self) -> Option<String> {
+        let scattering = |&object: &usize| {
+            self.plan.objects[object].material != MATERIAL_DIFFUSE && self.has_surface(object)
+        };
+        let object = (0..self.plan.objects.len()).find(scattering)?;
+        (self.plan.wave.max_bounces == 0).then(|| {
+            format!(
+                "object '{}' shows only the background: render.max_bounces is 0, so that rays end at mirrors and glass; \
+                 raise it, e.g. to 8",
+                self.name(object)
+            )
+        })
+    }
+}
+
+/// What is wrong with a picture that shows nothing, in a sentence which says what may be the cause; `None` where it shows
+/// something, or is smaller than 16 pixels.
+#[must_use]
+pub fn blank(film: &film::Film) -> Option<String> {
+    /// Fewer pixels may well be of one colour.
+    const FEWEST: usize = 16;
+    /// Part of the pixels that may show light in the dark; and faint light, along which surfaces lie.
+    const LEAKING: f64 = 0.005;
+    const GRAZING: f64 = 0.05;
+    const FAINT: f32 = 0.02;
+    let colors = film.color.as_slice();
+    let (first, rest) = colors.split_first().filter(|_| colors.len() >= FEWEST)?;
+    if colors.iter().all(|color| color[3] == 0.0) && film.object.iter().all(|object| *object < 0.0)
+    {
+        return Some(
+            "the picture shows nothing but the background: no ray met anything; objects may lie outside the picture, be \
+             smaller than a pixel, have no surface, or be transparent; render without [camera] to see where they are"
+                .to_owned(),
+        );
+    }
+    let rgb = |color: &[f32; 4]| [color[0], color[1], color[2]];
+    // Through the finest gaps of a surface a ray finds light, and where it only grazes the surface, not all of it is dark.
+    let hits = colors.iter().filter(|color| color[3] > 0.0).count();
+    let lit = |above: f32| {
+        let lit = colors.iter().filter(|color| rgb(color).iter().any(|x| *x > above)).count();
+        lit as f64 / hits.max(1) as f64
+    };
+    if hits >= FEWEST && lit(0.0) <= GRAZING && lit(FAINT) <= LEAKING {
+        return Some(
+            "the picture is black all over: no light reaches what is seen; the camera may be inside an object, the lights \
+             behind one or too weak, or what is seen has an albedo of 0; add a light of kind \"headlight\""
+                .to_owned(),
+        );
+    }
+    rest.iter().all(|color| rgb(color) == rgb(first)).then(|| {
+        format!(
+            "the picture is one colour all over, {:?}: what is seen may be only the inside of an object, a part of a flat \
+             one, or glass before one background; move camera.eye, or leave [camera] out",
+            rgb(first)
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests;
