@@ -365,7 +365,7 @@ pub(crate) fn is_whole(volume: &VolumeInfo) -> bool {
 /// layer of one radius, all of it, or once.
 fn shown<R: Real>(volume: &VolumeInfo, volumes: &Volumes, [scalar, way]: [R; 2]) -> March<R> {
     let zero = R::of(0.0);
-    if !(way > zero) {
+    if way <= zero {
         return March { color: V3::splat(zero), depth: zero, along: zero };
     }
     let mean = volume.mode == VOLUME_AVERAGE;
@@ -554,7 +554,7 @@ pub fn half_lost<R: Real>(
     depth: R,
 ) -> Option<R> {
     let wanted = (R::of(0.5) * depth.absorptance()).depth_of_absorptance();
-    if !(wanted > R::of(0.0)) {
+    if wanted <= R::of(0.0) {
         return None;
     }
     let way = Way::of(ray, end, media, volumes);
