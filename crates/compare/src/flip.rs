@@ -8,7 +8,7 @@
 //! know 8-bit pictures only; so the method is here in Rust.
 
 use crate::exposure::Exposures;
-use crate::lanes::{cube_root, power};
+use crate::lanes::{choose, cube_root, power};
 use crate::measure::percentiles;
 use crate::tiles::{Kernel, Shown, flip_map};
 use std::f64::consts::PI;
@@ -159,7 +159,7 @@ impl ColorErrors {
         let error = power(hyab(a, b), EXPONENT);
         let below = AT_KNEE / self.knee * error;
         let above = AT_KNEE + (error - self.knee) / self.rest * (1.0 - AT_KNEE);
-        if error < self.knee { below } else { above }
+        choose(error < self.knee, below, above)
     }
 }
 
@@ -213,7 +213,7 @@ fn root(v: f32) -> f32 {
     const DELTA: f32 = 6.0 / 29.0;
     const KNEE: f32 = DELTA * DELTA * DELTA;
     let root = cube_root(if v > KNEE { v } else { KNEE });
-    if v > KNEE { root } else { v / (3.0 * DELTA * DELTA) + 4.0 / 29.0 }
+    choose(v > KNEE, root, v / (3.0 * DELTA * DELTA) + 4.0 / 29.0)
 }
 
 /// L\*a\*b\* whose colour fades in the dark, [F] Section 4.1.2.

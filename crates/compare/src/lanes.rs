@@ -16,8 +16,7 @@ pub(crate) fn wide<R>(run: impl FnOnce() -> R) -> R {
 #[inline(always)]
 pub(crate) fn cube_root(x: f32) -> f32 {
     // A third of the exponent: 5 % off at most. Then Halley's iteration, whose error is cubed each time.
-    let guess = (x.to_bits() as f32 * (1.0 / 3.0)) as i32 as u32;
-    let mut y = f32::from_bits(guess + 0x2a51_19f2);
+    let mut y = f32::from_bits(x.to_bits() / 3 + 0x2a51_19f2);
     for _ in 0..2 {
         let cube = y * y * y;
         y *= (cube + 2.0 * x) / (2.0 * cube + x);
@@ -53,7 +52,14 @@ pub(crate) fn power(x: f32, y: f32) -> f32 {
         value = value * rest + factor;
     }
     let power = value * f32::from_bits((rounded.to_bits() << 23).wrapping_add(127 << 23));
-    if x > SMALLEST || y == 0.0 { power } else { 0.0 }
+    choose((x > SMALLEST) | (y == 0.0), power, 0.0)
+}
+
+/// One of two values, both of which are computed: a branch would keep several from being computed at once.
+#[inline(always)]
+pub(crate) fn choose(condition: bool, yes: f32, no: f32) -> f32 {
+    let mask = u32::from(condition).wrapping_neg();
+    f32::from_bits((yes.to_bits() & mask) | (no.to_bits() & !mask))
 }
 
 #[cfg(test)]

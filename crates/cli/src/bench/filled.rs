@@ -58,9 +58,10 @@ impl Filled {
             match written {
                 Ok(()) => {
                     progress.note(&format!(
-                        "{}: filled and kept as {}; remove that folder to empty the cache",
+                        "{}: filled, and kept as {}; to empty the cache, remove the folder {}",
                         model.display(),
-                        path.display()
+                        path.display(),
+                        cache.display()
                     ));
                     return Ok(path);
                 }

@@ -4,6 +4,7 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod bench;
+mod bench_preset;
 mod camera;
 mod columns;
 mod compare;
