@@ -435,7 +435,7 @@ impl Input {
         let metres = plan.projection.map(|projection| projection.to_string());
         self.options.note(plan.image_size, metres.as_deref(), progress);
         for warning in plan.coarse.iter().chain(&plan.long_steps) {
-            progress.warn(&format!("{warning}"));
+            progress.warn(&warning.to_string());
         }
         for doubt in &plan.doubts {
             progress.warn(doubt);

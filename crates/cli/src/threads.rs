@@ -1,8 +1,12 @@
 //! How many threads work: `--threads`, or one a core.
 
+use crate::limits::{self, Limit};
 use rayon::ThreadPoolBuilder;
 use std::sync::{Arc, Mutex, OnceLock};
 use std::thread::{self, Builder};
+
+/// Four times the stack of a thread.
+const THREAD_BYTES: u64 = 8 << 20;
 
 static COUNT: OnceLock<usize> = OnceLock::new();
 
@@ -19,7 +23,7 @@ pub fn start(asked: Option<usize>) {
         let _ = gpu::process::set_driver_threads(asked);
     }
     let wanted = asked.unwrap_or_else(count);
-    let possible = possible(wanted);
+    let possible = possible(wanted.min(with_room()));
     let _ = COUNT.set(possible.max(1));
     let pool = ThreadPoolBuilder::new()
         .num_threads(possible.max(1))
@@ -28,6 +32,15 @@ pub fn start(asked: Option<usize>) {
     let pool = if possible == 0 { pool.use_current_thread() } else { pool };
     // Fails where a pool was made already, or where threads were taken by others meanwhile.
     let _ = pool.build_global();
+}
+
+/// How many threads the process's own limits of memory have room for, with most of it left for other things. Threads for
+/// which there is barely room fail at their start, in ways that end the process.
+fn with_room() -> usize {
+    let rooms = limits::rooms().into_iter();
+    let own = rooms.filter(|room| matches!(room.limit, Limit::AddressSpace | Limit::Data));
+    let threads = own.map(|room| room.free / THREAD_BYTES).min();
+    threads.and_then(|threads| usize::try_from(threads).ok()).unwrap_or(usize::MAX)
 }
 
 /// How many of so many threads the system has to give: under a limit of memory or of processes, fewer.

@@ -260,7 +260,8 @@ mod tests {
     #[test]
     fn a_line_takes_what_fits() {
         let mut line = Line::new();
-        write!(line, "{} bytes of '{}'", 12, "ä").unwrap();
+        let (bytes, name) = (12, "ä");
+        write!(line, "{bytes} bytes of '{name}'").unwrap();
         assert_eq!(format!("{line:?}"), "12 bytes of 'ä'");
         for _ in 0..Line::ROOM {
             line.write_str("ä").unwrap();
