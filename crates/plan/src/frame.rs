@@ -222,7 +222,10 @@ mod tests {
         // 100 has hundredths of 10 exactly, 99 of 1.
         assert_eq!(file_origin(cube([12_346.0, 0.0, 0.0], 100.0)), [12_350.0, 0.0, 0.0]);
         assert_eq!(file_origin(cube([12_346.0, 0.0, 0.0], 99.0)), [12_346.0, 0.0, 0.0]);
-        assert_eq!(file_origin(cube([1e6 + 0.123_46, 0.0, 0.0], 1e-3)), [1_000_000.1235, 0.0, 0.0]);
+        assert_eq!(
+            file_origin(cube([1e6 + 0.123_46, 0.0, 0.0], 1e-3)),
+            [1_000_000.123_5, 0.0, 0.0]
+        );
         // One point, or several in one place.
         assert_eq!(file_origin([[6e6, 0.26, 0.0]; 2]), [6e6, 0.3, 0.0]);
         let far = file_origin(cube([1e15, 0.0, 0.0], 1e3));

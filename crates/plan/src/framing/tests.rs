@@ -250,7 +250,7 @@ fn the_key_light_follows_the_camera() {
     // Only the light that is the key light is turned.
     let fixed = Light::Directional { direction: [1.0, 2.0, 3.0], irradiance: [1.0; 3], angle: 0.0 };
     let camera = framed(CameraKeys::default(), SIZES[0], Up::Y).expect("a camera");
-    let lights = [fixed.clone(), fixed.clone()];
+    let lights = [fixed; 2];
     let turned = lights_for(&lights, Some(1), &camera);
     assert!(turned[0] == fixed && turned[1] != fixed);
     assert_eq!(lights_for(&lights, None, &camera), lights);
