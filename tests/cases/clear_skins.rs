@@ -107,6 +107,18 @@ fn an_absorbing_ball_of_index_one_dims_by_its_chord() {
             let errors = floor_errors(&film, 1.0, light, |way| a.map(|a| (-a * way).exp()));
             let [most, worst] = [0.99, 1.0].map(|share| percentile(errors.clone(), share));
             assert!(most < 5e-5 && worst < 2e-3, "{most:e}, worst {worst:e}");
+            // Nor is any light lost where it grazes the ball, and is in it for less than half a trust radius.
+            if let Light::Sun = light {
+                let darkest = 0.8 * FRAC_1_PI * 3.0 * unit(SUN)[1].abs() * (-2.0 * a[2]).exp();
+                let dark = (0..film.color.len()).filter(|&at| {
+                    film.object[at] == 0.0 && f64::from(film.color[at][2]) < 0.99 * darkest
+                });
+                assert_eq!(
+                    dark.count(),
+                    0,
+                    "pixels that are darker than the longest chord makes them"
+                );
+            }
         }
     }
 }

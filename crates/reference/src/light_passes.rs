@@ -29,7 +29,9 @@ pub(crate) fn light_through<R: Real>(
     for crossings in 0.. {
         grid_trace(&mut ray, levels, &reference.lists, &reference.polynomials, false);
         account(&ray);
-        let medium = media.medium(objects).filter(|&medium| medium != passed);
+        // Infinitely far away, rays are outside of everything: of a grazing one, the way out was not seen.
+        let is_finite = ray.hit_t < R::of(NO_HIT);
+        let medium = media.medium(objects).filter(|&medium| medium != passed).filter(|_| is_finite);
         arriving = arriving * transmittance(medium, ray.hit_t, objects);
         let slot = ray.hit_slot;
         if slot != NONE {
