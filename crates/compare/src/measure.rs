@@ -258,8 +258,8 @@ fn peak(values: &[f64], peak: f64) -> f64 {
     let mut lanes = [peak; 8];
     let (eights, rest) = values.as_chunks::<8>();
     let larger = |most: &mut f64, value: f64| {
-        // What is infinite or no number has no difference from itself that is 0.
-        let size = if value - value == 0.0 { value.abs() } else { 0.0 };
+        // What is infinite or no number does not become 0.
+        let size = if value * 0.0 == 0.0 { value.abs() } else { 0.0 };
         *most = if size > *most { size } else { *most };
     };
     for eight in eights {
