@@ -25,6 +25,7 @@ mod log;
 mod meant;
 mod memory;
 mod nothing;
+mod optics;
 mod pipes;
 mod points;
 mod render;
