@@ -29,6 +29,7 @@
 #include "volume.glsl"
 #include "state.glsl"
 #include "index.glsl"
+#include "scene.glsl"
 #ifdef LIT
 #include "light.glsl"
 #endif
@@ -252,7 +253,7 @@ void main() {
     uint work_left = params.work;
 
     // Drivers without real branches run what is under an if for every ray: loops of one turn or none are passed over.
-    bool alone = params.volume_count == 1u;
+    bool alone = !scene_has(SCENE_MANY_VOLUMES);
     VolumeInfo volume = volumes[march.volume];
     uint end_at = at * params.volume_count + march.volume;
 #ifdef LIT
@@ -280,36 +281,40 @@ void main() {
         uvec3 low, high;
         cells_around(volume.grid, x, reach, low, high);
         uint rows = look == LOOK_AROUND ? (high.y - low.y + 1u) * (high.z - low.z + 1u) : 0u;
-        bool particles = volume.kernel == VOLUME_SPH;
+        bool particles = scene_has(SCENE_PARTICLES) && (!scene_has(SCENE_WEIGHTS) || volume.kernel == VOLUME_SPH);
 
         while (march.row < rows && work_left > 0u) {
             uvec2 range = row_points(volume, low, high, march.row, x, reach);
             uint first = range.x + march.cursor;
             uint count = min(range.y - first, AT_ONCE);
             uint end = first + count;
-            for (uint i = particles ? end : first; i < end; i += 4u) {
-                FourPoints four = four_points(i, end, x);
-                vec4 weights = gaussians(volume, four);
-                vec4 weighted = weights * four.scalars;
-                march.numerator = add_up(march.numerator, weighted);
-                march.denominator = add_up(march.denominator, weights);
+            if (scene_has(SCENE_WEIGHTS)) {
+                for (uint i = particles ? end : first; i < end; i += 4u) {
+                    FourPoints four = four_points(i, end, x);
+                    vec4 weights = gaussians(volume, four);
+                    vec4 weighted = weights * four.scalars;
+                    march.numerator = add_up(march.numerator, weighted);
+                    march.denominator = add_up(march.denominator, weights);
 #ifdef LIT
-                sums.pull = add_up(sums.pull, weighted, four);
-                sums.weights_pull = add_up(sums.weights_pull, weights, four);
-                sums.visible = visible_at(sums.visible, weights, four);
+                    sums.pull = add_up(sums.pull, weighted, four);
+                    sums.weights_pull = add_up(sums.weights_pull, weights, four);
+                    sums.visible = visible_at(sums.visible, weights, four);
 #endif
+                }
             }
-            for (uint i = particles ? first : end; i < end; i += 4u) {
-                FourPoints four = four_points(i, end, x);
-                vec4 inverse_lengths = inverse_lengths_of(four);
-                vec4 weights = splines(four, inverse_lengths);
-                march.numerator = add_up(march.numerator, weights * four.scalars);
-                march.denominator = add_up(march.denominator, weights);
+            if (scene_has(SCENE_PARTICLES)) {
+                for (uint i = particles ? first : end; i < end; i += 4u) {
+                    FourPoints four = four_points(i, end, x);
+                    vec4 inverse_lengths = inverse_lengths_of(four);
+                    vec4 weights = splines(four, inverse_lengths);
+                    march.numerator = add_up(march.numerator, weights * four.scalars);
+                    march.denominator = add_up(march.denominator, weights);
 #ifdef LIT
-                vec4 pulls = spline_pulls(sqrt(four.squares) * inverse_lengths, inverse_lengths);
-                sums.pull = add_up(sums.pull, mix(vec4(0.0), pulls * four.scalars, four.are_there), four);
-                sums.visible = visible_at(sums.visible, weights, four);
+                    vec4 pulls = spline_pulls(sqrt(four.squares) * inverse_lengths, inverse_lengths);
+                    sums.pull = add_up(sums.pull, mix(vec4(0.0), pulls * four.scalars, four.are_there), four);
+                    sums.visible = visible_at(sums.visible, weights, four);
 #endif
+                }
             }
             bool row_ends = first + count >= range.y;
             march.cursor = row_ends ? 0u : march.cursor + count;
@@ -318,9 +323,7 @@ void main() {
         }
         work_left -= min(work_left, 2u);
 
-        uint end_count = march.row >= rows && march.place < places ? 1u : 0u;
-        while (end_count > 0u) {
-            --end_count;
+        if (march.row >= rows && march.place < places) { // all but those whose work ran out
             bool reached = march.denominator > 0.0;
             float divisor = volume.kernel == VOLUME_SHEPARD && reached ? march.denominator : 1.0;
             float scalar = min(max(march.numerator / divisor, -LARGEST), LARGEST);
@@ -348,7 +351,7 @@ void main() {
             float from = is_there ? there : border, to = is_here ? here : border;
 
             bool emission = volume.mode == VOLUME_EMISSION;
-            uint wholes = is_whole(volume) ? 1u : 0u;
+            uint wholes = scene_has(SCENE_WHOLES) && is_whole(volume) ? 1u : 0u;
             while (wholes > 0u) {
                 --wholes;
                 float counted = shows ? share * at_place.length_of_step : 0.0;
@@ -367,21 +370,22 @@ void main() {
             vec3 mean_light = both ? 0.5 * (light_there + light) : (is_here ? light : light_there);
             seen.scattering.xyz *= mean_light;
 #endif
-            vec3 color_now = march.step_color + share * (seen.scattering.xyz + seen.emission);
-            float extinction_now = march.step_extinction + share * seen.scattering.w;
-            march.step_color = counts_here ? color_now : march.step_color;
-            march.step_extinction = counts_here ? extinction_now : march.step_extinction;
+            vec3 others_color = alone ? vec3(0.0) : march.step_color;
+            float others_extinction = alone ? 0.0 : march.step_extinction;
+            vec3 color_now = others_color + share * (seen.scattering.xyz + seen.emission);
+            float extinction_now = others_extinction + share * seen.scattering.w;
+            vec3 step_color = counts_here ? color_now : others_color;
+            float step_extinction = counts_here ? extinction_now : others_extinction;
             march.numerator = 0.0;
             march.denominator = 0.0;
             march.row = 0u;
-            ++march.volume;
-            bool last = march.volume >= params.volume_count;
-            float step_depth = march.step_extinction * at_place.length_of_step;
-            bool emits = last && (step_depth > 0.0 || any(greaterThan(march.step_color, vec3(0.0))));
+            bool last = alone || march.volume + 1u >= params.volume_count;
+            float step_depth = step_extinction * at_place.length_of_step;
+            bool emits = last && (step_depth > 0.0 || any(greaterThan(step_color, vec3(0.0))));
             float through = exp_negative(-march.depth);
             vec3 lengths = vec3(at_place.length_of_step * mean_transmittance(step_depth)); // that a step shows
 #ifndef SHADOWS
-            uint absorbs = emits && medium != NONE ? 1u : 0u;
+            uint absorbs = scene_has(SCENE_ABSORBS) && emits && medium != NONE ? 1u : 0u;
             while (absorbs > 0u) {
                 --absorbs;
                 vec3 both_depths = vec3(step_depth) + object_at(medium).absorption * at_place.length_of_step;
@@ -390,8 +394,8 @@ void main() {
                 lengths.z = at_place.length_of_step * mean_transmittance(both_depths.z);
                 lengths *= transmittance(medium, at_place.begin);
             }
-            bool again = march.state == 3u;
-            vec3 sent = through * (lengths * march.step_color);
+            bool again = scene_has(SCENE_DEPTHS) && march.state == 3u;
+            vec3 sent = through * (lengths * step_color);
             bool sends = emits && !again;
             vec3 color_lost = march.color_lost;
             vec3 color = add_to(march.color, sent, color_lost);
@@ -410,9 +414,9 @@ void main() {
             float depth = add_to(march.depth, step_depth, depth_lost);
             march.depth = adds ? depth : march.depth;
             march.depth_lost = adds ? depth_lost : march.depth_lost;
-            march.step_color = last ? vec3(0.0) : march.step_color;
-            march.step_extinction = last ? 0.0 : march.step_extinction;
-            march.volume = last ? 0u : march.volume;
+            march.step_color = last ? vec3(0.0) : step_color;
+            march.step_extinction = last ? 0.0 : step_extinction;
+            march.volume = last ? 0u : march.volume + 1u;
             bool dark = march.depth > DEEPEST;
             march.depth = dark ? OPAQUE : march.depth;
             march.place = last ? (dark || found ? places : march.place + 1u) : march.place;

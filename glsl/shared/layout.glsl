@@ -189,6 +189,12 @@
 #define SCENE_SPHERES 1048576 // some are spheres
 #define SCENE_TURNED 2097152 // the environment is turned
 #define SCENE_CLEAR 4194304 // glass may meet a medium of its own index
+#define SCENE_WEIGHTS 8388608 // points of a volume have weights, Eq. 3 or their sum
+#define SCENE_PARTICLES 16777216 // or smoothing lengths
+#define SCENE_MANY_VOLUMES 33554432 // more than one
+#define SCENE_WHOLES 67108864 // one scalar stands for the whole way of a ray
+#define SCENE_GLOWS 134217728 // a transfer function has an emission
+#define SCENE_DEPTHS 268435456 // where half of the light is lost is asked for
 
 // What transparent pictures leave the background out of.
 #define TRANSPARENT_CAMERA 1 // camera rays

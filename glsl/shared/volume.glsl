@@ -6,6 +6,7 @@
 #include "layout.glsl"
 #include "math.glsl"
 #include "grid.glsl"
+#include "scene.glsl"
 
 layout(std430, binding = MARCH_VOLUMES) readonly buffer Volumes { VolumeInfo volumes[]; };
 
@@ -218,7 +219,7 @@ Shown mean_within(VolumeInfo volume, uint piece, float a, float b) {
     float bend = (width * width) * 8.33333333e-2;
     vec3 scattering = color.xyz * color.w + (bend * change.w) * change.xyz;
     vec3 emission = vec3(0.0);
-    uint glows = volume.slot; // most do not, and need no more texels
+    uint glows = scene_has(SCENE_GLOWS) ? volume.slot : 0u; // most do not, and need no more texels
     while (glows > 0u) {
         glows = 0u;
         vec3 emission_low = value_of_stop(low).yzw;

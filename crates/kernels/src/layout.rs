@@ -354,6 +354,18 @@ constants! {
     SCENE_TURNED = 2_097_152;
     /// Glass may meet a medium of its own index.
     SCENE_CLEAR = 4_194_304;
+    /// Points of a volume have weights, Eq. 3 or their sum.
+    SCENE_WEIGHTS = 8_388_608;
+    /// Or smoothing lengths.
+    SCENE_PARTICLES = 16_777_216;
+    /// More than one.
+    SCENE_MANY_VOLUMES = 33_554_432;
+    /// One scalar stands for the whole way of a ray.
+    SCENE_WHOLES = 67_108_864;
+    /// A transfer function has an emission.
+    SCENE_GLOWS = 134_217_728;
+    /// Where half of the light is lost is asked for.
+    SCENE_DEPTHS = 268_435_456;
     /// Grids of a scene, at most.
     MOST_LEVELS = 16;
     /// [`VolumeInfo::kernel`] of the weighted mean, Eq. 3 of the paper.

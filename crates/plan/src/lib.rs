@@ -68,7 +68,7 @@ use images::{ImageList, Use};
 use kernels::layout::{
     self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, MATERIAL_DIFFUSE,
     MATERIAL_GLASS, MEDIA_WORDS, NONE, ObjectInfo, SCENE_ABSORBS, SCENE_ALPHA, SCENE_BLENDS,
-    SCENE_CHANCE, SCENE_CLEAR, SCENE_DIAGNOSTICS, SCENE_DIFFUSE, SCENE_DISPERSES,
+    SCENE_CHANCE, SCENE_CLEAR, SCENE_DEPTHS, SCENE_DIAGNOSTICS, SCENE_DIFFUSE, SCENE_DISPERSES,
     SCENE_ENVIRONMENT, SCENE_LIGHTS, SCENE_MANY_LIGHTS, SCENE_NESTED, SCENE_REFINES, SCENE_SAMPLES,
     SCENE_SCATTERS, SCENE_SHAPES, SCENE_SPHERES, SCENE_TEXTURES, SCENE_TURNED, SCENE_VALUES,
     SCENE_VOLUMES, TRANSPARENT_CAMERA, TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
@@ -529,9 +529,13 @@ impl Plan {
             (SCENE_MANY_LIGHTS, self.lights.len() > 1),
             (SCENE_TURNED, self.turns_environment()),
             (SCENE_CLEAR, self.may_be_clear()),
+            (SCENE_DEPTHS, self.wants_volume_depth()),
         ]
         .into_iter()
-        .fold(0, |bits, (bit, is_set)| if is_set { bits | bit } else { bits })
+        .fold(
+            self.volumes.scene_bits(),
+            |bits, (bit, is_set)| if is_set { bits | bit } else { bits },
+        )
     }
 
     /// Whether directions are turned before they are looked up in the environment.

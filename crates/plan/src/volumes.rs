@@ -11,7 +11,8 @@ use crate::missing::{Lacking, Missing};
 use crate::neighborhoods::{length, open_points, spacing};
 use crate::transfer::{own_range, scaled, stops_of};
 use kernels::layout::{
-    CELL_ABOVE, CELL_BELOW, CELL_LOOK, CELL_NOTHING, GridInfo, Polynomial, VOLUME_AVERAGE,
+    CELL_ABOVE, CELL_BELOW, CELL_LOOK, CELL_NOTHING, GridInfo, Polynomial, SCENE_GLOWS,
+    SCENE_MANY_VOLUMES, SCENE_PARTICLES, SCENE_WEIGHTS, SCENE_WHOLES, VOLUME_AVERAGE,
     VOLUME_EMISSION, VOLUME_EMITS, VOLUME_GRADIENT, VOLUME_INTEGRAL, VOLUME_ISOSURFACE,
     VOLUME_LIGHTS, VOLUME_MAXIMUM, VOLUME_SCATTERS, VOLUME_SHEPARD, VOLUME_SPH, VOLUME_SUM,
     VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
@@ -317,6 +318,20 @@ impl Volumes {
     #[must_use]
     pub fn any_lit(&self) -> bool {
         self.infos.iter().any(|info| info.shading != VOLUME_EMITS)
+    }
+
+    /// `SCENE_*`: what kernels of these volumes have to do.
+    pub(crate) fn scene_bits(&self) -> u32 {
+        let glows = |info: &VolumeInfo| info.mode != VOLUME_ISOSURFACE && info.slot != 0;
+        [
+            (SCENE_WEIGHTS, self.infos.iter().any(|info| info.kernel != VOLUME_SPH)),
+            (SCENE_PARTICLES, self.infos.iter().any(|info| info.kernel == VOLUME_SPH)),
+            (SCENE_MANY_VOLUMES, self.infos.len() > 1),
+            (SCENE_WHOLES, self.is_whole()),
+            (SCENE_GLOWS, self.infos.iter().any(glows)),
+        ]
+        .into_iter()
+        .fold(0, |bits, (bit, is_set)| if is_set { bits | bit } else { bits })
     }
 
     /// The colour that a volume's transfer function gives a scalar.

@@ -177,7 +177,7 @@ impl Passes {
             shade: Shade::new(device, form, scene)?,
             light_passes: LightPasses::new(device, form, scene)?,
             scatter: Scatter::new(device, form, scene)?,
-            march: March::new(device, form)?,
+            march: March::new(device, form, scene)?,
             isosurface: Isosurface::new(device, form)?,
             point_light: PointLight::new(device, form)?,
             list_marked: ListMarked::new(device)?,

@@ -42,7 +42,7 @@ pub(crate) struct March {
 impl March {
     pub const NAME: &'static str = "march";
 
-    pub fn new(device: &Arc<Device>, form: RayLoop) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, form: RayLoop, scene: u32) -> Result<Self, GpuError> {
         let params = size_of::<MarchParams>();
         let kernel = |module: &[u32], more: &[u32]| {
             let mut bindings = form.bindings(Touch::Reads);
@@ -53,7 +53,7 @@ impl March {
                 SHADE_OBJECTS | MARCH_VISIBLE => (binding, form.read(Texel::Four)),
                 _ => (binding, Binding::StorageBuffer),
             }));
-            Kernel::new(device, Self::NAME, module, &bindings, params)
+            Kernel::specialized(device, Self::NAME, module, &bindings, params, Some(scene))
         };
         Ok(Self {
             wave: kernel(
