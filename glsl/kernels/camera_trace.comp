@@ -96,7 +96,10 @@ void main() {
         bool enters = object.material == MATERIAL_GLASS;
         bool disperses = object.ior.x != object.ior.y || object.ior.y != object.ior.z;
         if (found && !is_diffuse) {
-            mark_scattering(at, params.max_bounces == 0u ? 0u : (enters && disperses ? 3u : 1u));
+            // Into glass of the air's index a ray goes straight, which is no bounce.
+            bool passed = scene_has(SCENE_CLEAR) && enters && object.ior == vec3(1.0);
+            bool ends = params.max_bounces == 0u && !passed;
+            mark_scattering(at, ends ? 0u : (enters && disperses ? 3u : 1u));
             store_ray(at, ray);
             hits[at].position = met.position;
             hits[at].normal = met.normal;

@@ -35,6 +35,17 @@ layout(push_constant) uniform Push { WaveParams params; };
 #include "film.glsl"
 #include "marks.glsl"
 
+// What channels of volumes show of a later part of the camera's way, where no part before had anything. Depth goes on
+// from the first surface.
+void show_later(uint pixel, Ray ray, float along) {
+    float shown = film[pixel].along;
+    if ((params.flags & uint(WAVE_VALUES)) != 0u && shown == 0.0) film[pixel].along = along;
+    if ((params.flags & uint(WAVE_LOSSES)) != 0u && shown < 0.0 && along >= 0.0) {
+        vec4 first = film[pixel].position_depth;
+        film[pixel].along = (first.w + dot3(ray.origin - first.xyz, params.forward)) + along;
+    }
+}
+
 // Rays that a ray makes at a surface that is not diffuse.
 uint rays_behind(Path path, Media media, uint object, uint way) {
     bool spent = path.bounces >= params.max_bounces;
@@ -95,6 +106,10 @@ void main() {
         if (scene_has(SCENE_VOLUMES)) film[pixel].along = marches[at].along;
     } else {
         count_work(pixel, ray.tests, ray.cells);
+        if (scene_has(SCENE_VOLUMES)) {
+            bool shows = (channels & 1u) != 0u && (channels & uint(PATH_REFLECTED)) == 0u;
+            if (shows) show_later(pixel, ray, marches[at].along);
+        }
         if (!found || (is_diffuse && !is_lit)) write_channels(pixel, channels, behind);
         if (!found) write_alpha(pixel, channels, alpha);
     }

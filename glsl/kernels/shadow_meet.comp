@@ -5,7 +5,7 @@
 // writes  light_sums       what the media on the way leave of the light, by channel
 //         the shadow rays' state      of rays that a surface between equal media lets through: no hit, so that
 //                          isosurfaces and volumes as far as that surface count
-//         shadow_paths     that surface
+//         shadow_paths     that surface; of rays that have arrived, only media that the light is in
 // runs    one invocation per shadow ray
 // twin    crates/reference/src/light_passes.rs
 #version 460
@@ -29,12 +29,36 @@ uint media_word(uint ray, uint word) {
 #include "media.glsl"
 #include "way.glsl"
 
+void put_member(uint at, uint place, uint object) {
+    uint both = shadow_paths[at].media[place / 2u];
+    shadow_paths[at].media[place / 2u] = bitfieldInsert(both, object, 16 * int(place & 1u), 16);
+}
+
+// The last part of the way ends at the light: what that is not inside, the ray has left unseen, as where it grazes a
+// surface, or was never in. Whether a volume's own object has a surface is not known.
+void leave_what_the_light_is_outside(uint at) {
+    uint count = shadow_paths[at].media_count, kept = 0u;
+    for (uint i = 0u; i < count; ++i) {
+        uint member = member_of(Media(at, count), i);
+        bool stays = params.lamp_count == NONE || member == (params.passed & ~PASSED_NEAR);
+        uint asked = params.lamp_count == NONE ? 0u : params.lamp_count;
+        for (uint j = 0u; j < asked; ++j) {
+            stays = stays || member == bitfieldExtract(params.lamp_media[j / 2u], 16 * int(j & 1u), 16);
+        }
+        put_member(at, kept, member);
+        kept += stays ? 1u : 0u;
+    }
+    shadow_paths[at].media_count = kept;
+}
+
 void main() {
     uint at = list_index();
     if (at >= params.ray_count) return;
     vec3 arriving = light_sums[at].arriving;
     if (shadow_paths[at].bounces != 0u || !any(greaterThan(arriving, vec3(0.0)))) return;
     Ray ray = load_ray(at);
+    bool found = ray.hit_slot != NONE;
+    if (!found) leave_what_the_light_is_outside(at);
     Media media = Media(at, shadow_paths[at].media_count);
     uint medium = medium_without(media, NONE);
     // The volume's own object, whose surface is not there: where its glass ends is not known.
@@ -42,7 +66,6 @@ void main() {
     // Infinitely far away, rays are outside of everything: of a grazing one, the way out was not seen.
     medium = ray.hit_t < NO_HIT ? medium : NONE;
     arriving *= transmittance(medium, ray.hit_t);
-    bool found = ray.hit_slot != NONE;
     uint object = found ? object_of(ray.hit_slot) : 0u;
     bool is_glass = found && object_at(object).material == MATERIAL_GLASS;
     bool passes = false;

@@ -164,6 +164,8 @@
 // Of a wave.
 #define WAVE_FROM_CAMERA 1  // its rays come from there
 #define WAVE_SHARES_PATH 2  // and have one path, but for the pixel
+#define WAVE_VALUES 4       // where paths have shown no scalar of a volume yet, this part of the way does
+#define WAVE_LOSSES 8       // where they have lost no light to volumes yet, this part of the way says where
 
 // What a scene has need of: bits of the specialization constant 0 (scene.glsl). Drivers leave out what it has not.
 #define SCENE_ENVIRONMENT 1 // rays that hit nothing see an image
@@ -450,10 +452,12 @@ struct TreeLevelParams { // 24 bytes
 
 // Of shadow rays where light may pass surfaces. Of their paths, `channels` is the slot of the surface that a ray has
 // met and goes through, or NONE; `bounces` 1 once it has ended; `depth` what is left of the way to the light.
-struct ShadowParams {    // 12 bytes
+struct ShadowParams {    // 48 bytes
     uint ray_count;      //  0
     uint passed;         //  4  object whose surface is not there, or NONE
     uint counts;         //  8  1: the work of rays is counted in the film
+    uint lamp_count;     // 12  objects that the light may be inside; NONE: it is not known which
+    uint lamp_media[MEDIA_WORDS]; // 16  those, 16 bits each
 };
 
 // Where the leaves of the tree are.

@@ -432,3 +432,111 @@ fn scenes_without_such_surfaces_are_left_alone() {
     assert!(passes(&(glass(1.5, 0.0) + &glass(1.0, 3.0)), &sun()), "the index of air");
     assert!(!passes(&(glass(1.5, 0.0) + &glass(1.0, 3.0)), ""), "no light");
 }
+
+/// A coarse skin of 500 points, whose way out a grazing ray does not always see: behind it, nothing but the smoke's shadow,
+/// and only the glass's, up to lamps near and infinitely far. Chords under half a trust radius are missed, here 0.1.
+#[test]
+fn rays_that_graze_a_coarse_skin_lose_no_light_beyond_it() {
+    let set = with_attribute(smoke(8_000, 0.97), "s", |_| 1.0);
+    let coarse = |set: &PointSet| {
+        let mut positions: Vec<V3> = set.positions.iter().copied().take(8_000).collect();
+        positions.extend(fibonacci_sphere(500));
+        let mut coarse = set_of(positions);
+        let on_skin = (0..8_500).map(|i| f64::from(i >= 8_000)).collect();
+        coarse.attributes.push(Attribute { name: "skin".into(), values: Values::F64(on_skin) });
+        with_attribute(coarse, "s", |_| 1.0)
+    };
+    let smoky = coarse(&set);
+    let skin = set_of(fibonacci_sphere(500));
+    for light in [Light::Sun, Light::Lamp([0.6, 2.8, 0.3])] {
+        for (object, set, sigma) in [
+            (
+                format!("material = {{ kind = \"glass\", ior = 1.0 }}\n{FOG}boundary = \"skin\"\n"),
+                &smoky,
+                1.5,
+            ),
+            (
+                "material = { kind = \"glass\", ior = 1.0, absorption = [1.5, 1.5, 1.5] }\n"
+                    .to_owned(),
+                &skin,
+                1.5,
+            ),
+        ] {
+            let text = format!(
+                "{}{}{FLOOR}[[objects]]\npoints = \"smoke.ply\"\n{object}",
+                VIEW.text(),
+                light.text()
+            );
+            let plan = plan_of(&text, &[floor(), set.clone()]);
+            assert_eq!(plan.lamp_media, [Some(vec![])], "the lamp is outside");
+            let film = render_twin(&plan).film;
+            let mut worst = f64::NEG_INFINITY;
+            for pixel in 0..film.color.len() {
+                let d = VIEW.through(pixel);
+                let t = (-1.5 - VIEW.eye[1]) / d[1];
+                let x = add(VIEW.eye, d, t);
+                let on_floor = t > 0.0 && x[0].abs() < 2.8 && x[2].abs() < 2.8;
+                if !on_floor || VIEW.distance(pixel, [0.0; 3]) < 1.06 {
+                    continue;
+                }
+                let (towards, irradiance) = match light {
+                    Light::Sun => (unit(SUN.map(|c| -c)), 3.0),
+                    Light::Lamp(place) => {
+                        let way = add(place, x, -1.0);
+                        (unit(way), 40.0 / dot(way, way))
+                    }
+                };
+                let lit = 0.8 * FRAC_1_PI * irradiance * towards[1];
+                let [inside, nearest] = chord(x, towards, 1.0);
+                if nearest < 0.9 {
+                    continue;
+                }
+                // Of a grazing ray, at most the chord may be missed.
+                let left = f64::from(film.color[pixel][0]) / lit;
+                worst = worst.max((-sigma * (inside + 0.1)).exp() - left);
+            }
+            assert!(worst < 0.0, "{worst} of the light is lost beyond what a chord takes");
+        }
+    }
+}
+
+/// A lamp inside is inside; a soft one, or one in doubt, may be.
+#[test]
+fn the_plan_knows_what_a_lamp_is_inside() {
+    let media = |light: &str| {
+        let text = format!(
+            "{}{light}{FLOOR}[[objects]]\npoints = \"ball.ply\"\nmaterial = {{ kind = \"glass\", ior = 1.0 }}\n",
+            VIEW.text()
+        );
+        plan_of(&text, &[floor(), set_of(fibonacci_sphere(2_000))]).lamp_media
+    };
+    assert_eq!(media(&sun()), [Some(vec![])]);
+    assert_eq!(media(&Light::Lamp([0.1, 0.2, 0.0]).text()), [Some(vec![1])]);
+    assert_eq!(media(&Light::Lamp([0.1, 2.2, 0.0]).text()), [Some(vec![])]);
+    let soft = Light::Lamp([0.0, 1.2, 0.0]).text() + "radius = 0.4\n";
+    assert_eq!(media(&soft), [Some(vec![1])]);
+}
+
+/// Passing a surface of one index on both sides is no bounce: with none to spend, the picture is the same, on the device,
+/// whose first wave may be one pass, too.
+#[test]
+fn no_bounce_is_needed_to_pass_a_clear_skin() {
+    let bench = Bench::open();
+    for primary in ["grid", "discs", "tree"] {
+        let film = |bounces: u32| {
+            let text = format!(
+                "{}[render]\nmax_bounces = {bounces}\nprimary = \"{primary}\"\n\
+                 {}{FLOOR}[[objects]]\npoints = \"ball.ply\"\n\
+                 material = {{ kind = \"glass\", ior = 1.0, absorption = [0.2, 0.7, 1.5] }}\n",
+                VIEW.text(),
+                sun()
+            );
+            let plan = plan_of(&text, &[floor(), set_of(fibonacci_sphere(2_000))]);
+            let on_device = bench.render(&plan);
+            assert_same_bits(primary, &on_device, &render_twin(&plan));
+            on_device.film
+        };
+        let [none, many] = [0, 8].map(film);
+        assert_eq!(none.color, many.color, "{primary}");
+    }
+}

@@ -218,3 +218,72 @@ fn beside_all_fog_zv_is_infinite_and_the_value_zero() {
         assert!(channel(&film, "value").iter().all(|value| *value == 0.0));
     }
 }
+
+/// Points of a ball's inside, and of a skin around it that is its surface.
+fn ball_in_skin() -> PointSet {
+    let fine = |i: i32| f64::from(i) * 0.125;
+    let inner = (-8..=8)
+        .flat_map(|x| (-8..=8).flat_map(move |y| (-8..=8).map(move |z| [x, y, z].map(fine))));
+    let inner: Vec<[f64; 3]> =
+        inner.filter(|p| p.iter().map(|c| c * c).sum::<f64>() < 0.95).collect();
+    let count = inner.len();
+    let skin = harness::fibonacci_sphere(6_000);
+    let mut set = set_of(inner.into_iter().chain(skin).collect());
+    let on_skin = (0..set.positions.len()).map(|i| f64::from(i >= count)).collect();
+    let values = points::Values::F64(on_skin);
+    set.attributes.push(points::Attribute { name: "skin".into(), values });
+    with_attribute(set, "s", |_| 1.0)
+}
+
+/// The square of how far from the middle of the unit ball a ray along -z passes, of rays 0.2 apart.
+fn square_beside(at: usize) -> f64 {
+    let x = (at as f64 % 16.0 + 0.5 - 8.0) * 0.2;
+    let y = ((at / 16) as f64 + 0.5 - 6.0) * 0.2;
+    x * x + y * y
+}
+
+/// A volume inside a surface is what most volumes are: the ray's column and half-loss depth are those of its chord, of
+/// index 1 also where no bounce may be spent; of another index, that of the refracted ray, along the viewing axis.
+/// Chords of 6000 points err by 5e-6.
+#[test]
+fn volumes_in_skins_show_their_column_and_half_loss() {
+    let sigma = 0.3;
+    let map = "mode = \"integral\"\ncolor_map = \"gray\"\nvalue_range = [0.0, 3.0]".to_owned();
+    let fog =
+        format!("transfer = [{{ value = 0.0, color = [1.0, 1.0, 1.0], extinction = {sigma} }}]");
+    for (name, more) in [("integral", &map), ("fog", &fog)] {
+        for (ior, samples, bounces) in [(1.0, 1, 8), (1.0, 3, 8), (1.0, 1, 0), (1.33, 1, 8)] {
+            let text = format!(
+                "{}[[objects]]\npoints = \"b.ply\"\nmaterial = {{ kind = \"glass\", ior = {ior} }}\n\
+                 [objects.volume]\nscalar = \"s\"\nboundary = \"skin\"\nradius = 0.25\nstep = 0.02\n{more}\n\
+                 [render]\nmax_bounces = {bounces}\n",
+                view(2.4).replace("[16, 12]", &format!("[16, 12]\nsamples = {samples}"))
+            );
+            let film = render(name, &with_extras(&text, &[ball_in_skin()]));
+            let (values, depths) = (channel(&film, "value"), channel(&film, "Zv"));
+            let (mut met, mut worst) = (0, 0.0f64);
+            for at in 0..values.len() {
+                let square = square_beside(at);
+                if square > 0.95 {
+                    continue;
+                }
+                met += 1;
+                let sine = square.sqrt();
+                let chord = 2.0 * (1.0 - square / (ior * ior)).sqrt();
+                let [found, expected] = if name == "integral" {
+                    assert_eq!(depths[at], f32::INFINITY);
+                    [f64::from(values[at]), chord]
+                } else {
+                    assert_eq!(values[at], 0.0);
+                    let lost = -(0.5 * (-sigma * chord).exp_m1()).ln_1p() / sigma;
+                    let turned = (sine.asin() - (sine / ior).asin()).cos();
+                    [f64::from(depths[at]), 4.0 - (1.0 - square).sqrt() + turned * lost]
+                };
+                worst = worst.max((found - expected).abs());
+            }
+            assert!(met > 40, "{met} rays through the ball");
+            println!("{name}, ior {ior}, {samples} samples, {bounces} bounces: off by {worst:.1e}");
+            assert!(worst < 1e-4, "{name}, {ior}, {samples}, {bounces}: {worst:e}");
+        }
+    }
+}

@@ -308,6 +308,10 @@ constants! {
     WAVE_FROM_CAMERA = 1;
     /// [`WaveParams::flags`]: all rays have the camera's path, but for the pixel.
     WAVE_SHARES_PATH = 2;
+    /// [`WaveParams::flags`]: of paths that have shown no scalar of a volume yet, the next part of the way does.
+    WAVE_VALUES = 4;
+    /// [`WaveParams::flags`]: of paths that have lost no light to volumes yet, the next part of the way says where it is.
+    WAVE_LOSSES = 8;
     /// Of the constant that kernels are specialized by: rays that hit nothing see an image.
     SCENE_ENVIRONMENT = 1;
     /// Normals of an object are blended.
@@ -1370,8 +1374,12 @@ pub struct ShadowParams {
     pub passed: u32,
     /// 1: the work of rays is counted in the film.
     pub counts: u32,
+    /// Objects that the light may be inside of; `NONE`: it is not known which.
+    pub lamp_count: u32,
+    /// Those, 16 bits each.
+    pub lamp_media: [u32; MEDIA_WORDS as usize],
 }
-gpu_layout!(ShadowParams, 12, { ray_count: 0, passed: 4, counts: 8 });
+gpu_layout!(ShadowParams, 48, { ray_count: 0, passed: 4, counts: 8, lamp_count: 12, lamp_media: 16 });
 
 /// Push constants of `point_rays` and `point_lights`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]

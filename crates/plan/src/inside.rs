@@ -8,7 +8,9 @@ use crate::bulk::World;
 use crate::crossings::{Votes, votes};
 use crate::shapes::surface_slots;
 use crate::volumes::Volumes;
-use kernels::layout::{MEDIA_WORDS, VOLUME_ISOSURFACE, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo};
+use kernels::layout::{
+    LIGHT_POINT, Light, MEDIA_WORDS, VOLUME_ISOSURFACE, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo,
+};
 use points::{Cloud, PointSet, ShapeKind, Shapes};
 use scene::{MaterialKind, Scene, SurfaceKind};
 use std::ops::Range;
@@ -16,6 +18,9 @@ use std::sync::Arc;
 
 /// Points whose normals are asked: one normal alone may be wrong.
 const ASKED: usize = 8;
+
+/// Point lights of which it is asked what they are inside of.
+const MOST_LAMPS: usize = 16;
 
 /// What is known of the points of a scene.
 pub(crate) struct Known<'a> {
@@ -61,6 +66,63 @@ pub(crate) fn media_of_eye(
     media.extend(spheres);
     media.truncate(2 * MEDIA_WORDS as usize);
     (media, doubts)
+}
+
+/// Of each light, the objects of glass that it is inside, or may be: a part of it, or in doubt. None of a light infinitely
+/// far away. `None` where there are too many lights to ask, or more objects than a path can hold. `eye` has its media beside
+/// it: a light there has them, too.
+pub(crate) fn media_of_lamps(
+    scene: &Scene,
+    known: &Known<'_>,
+    lights: &[Light],
+    (eye, of_eye): ([f64; 3], &[u32]),
+) -> Vec<Option<Vec<u32>>> {
+    let is_glass = |index: u32| {
+        matches!(scene.objects[index as usize].material.kind, MaterialKind::Glass { .. })
+    };
+    let asked = lights.iter().filter(|light| light.kind == LIGHT_POINT).count();
+    let of = |light: &Light| {
+        if light.kind != LIGHT_POINT {
+            return Some(Vec::new());
+        }
+        if asked > MOST_LAMPS {
+            return None;
+        }
+        let middle = [0, 1, 2].map(|axis| f64::from(light.vector[axis]) + known.cloud.origin[axis]);
+        let radius = f64::from(light.extent);
+        let mut places = vec![middle];
+        for axis in 0..if radius > 0.0 { 3 } else { 0 } {
+            for side in [-radius, radius] {
+                let mut place = middle;
+                place[axis] += side;
+                places.push(place);
+            }
+        }
+        let local_eye = local(known, eye).map(|x| x as f32);
+        let is_at_eye = light.vector == local_eye;
+        let may_be_in = |&index: &u32| {
+            is_glass(index)
+                && ((is_at_eye && of_eye.contains(&index))
+                    || places.iter().any(|&place| may_be_inside(scene, known, index, place)))
+        };
+        let media: Vec<u32> = (0..scene.objects.len() as u32).filter(may_be_in).collect();
+        (media.len() <= 2 * MEDIA_WORDS as usize).then_some(media)
+    };
+    lights.iter().map(of).collect()
+}
+
+/// Whether a place is inside an object of glass, or that is in doubt.
+fn may_be_inside(scene: &Scene, known: &Known<'_>, index: u32, place: [f64; 3]) -> bool {
+    if spheres_around(known, index, place) > 0 {
+        return true;
+    }
+    if matches!(scene.objects[index as usize].surface.kind, SurfaceKind::Spheres(_)) {
+        return false;
+    }
+    above_isosurface(known.volumes, index, local(known, place)).unwrap_or_else(|| {
+        let (inside, doubt) = by_surface(scene, known, index, place);
+        inside || doubt.is_some()
+    })
 }
 
 /// The eye in the kernels' coordinates.

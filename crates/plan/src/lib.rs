@@ -71,7 +71,8 @@ use kernels::layout::{
     SCENE_CHANCE, SCENE_CLEAR, SCENE_DEPTHS, SCENE_DIAGNOSTICS, SCENE_DIFFUSE, SCENE_DISPERSES,
     SCENE_ENVIRONMENT, SCENE_LIGHTS, SCENE_MANY_LIGHTS, SCENE_NESTED, SCENE_REFINES, SCENE_SAMPLES,
     SCENE_SCATTERS, SCENE_SHAPES, SCENE_SPHERES, SCENE_TEXTURES, SCENE_TURNED, SCENE_VALUES,
-    SCENE_VOLUMES, TRANSPARENT_CAMERA, TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WaveParams,
+    SCENE_VOLUMES, TRANSPARENT_CAMERA, TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WAVE_LOSSES,
+    WAVE_VALUES, WaveParams,
 };
 use lights::local_light;
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
@@ -158,6 +159,9 @@ pub struct Plan {
     pub lights: Vec<layout::Light>,
     /// Whether their light passes surfaces between media of one index, of which there are some: shadow rays go on there.
     pub light_passes: bool,
+    /// Of each light the objects of glass that it is, or may be, inside of, where its light passes surfaces; `None` where
+    /// that is not asked.
+    pub lamp_media: Vec<Option<Vec<u32>>>,
     /// The full image: columns and rows.
     pub image_size: [u32; 2],
     /// What of it is rendered.
@@ -310,10 +314,14 @@ impl Plan {
         let chosen_text = chosen::attribute(&found.chosen);
         let color_scales = scales::of_scene(scene, &volumes, &found.chosen);
         let scene_lights = framing::lights_for(&scene.lights, scene.key_light, &camera);
-        let lights =
-            scene_lights.iter().map(|light| local_light(light, &camera, cloud.origin)).collect();
+        let lights = scene_lights.iter().map(|light| local_light(light, &camera, cloud.origin));
+        let lights: Vec<layout::Light> = lights.collect();
         let light_passes =
             !scene_lights.is_empty() && clear::lets_light_pass(&objects, &cloud, &shapes);
+        let lamp_media = match light_passes {
+            true => inside::media_of_lamps(scene, &known, &lights, (camera.eye, &camera_media)),
+            false => vec![None; lights.len()],
+        };
         let framed =
             Scene { camera: camera.into(), lights: scene_lights, key_light: None, ..scene.clone() };
         Ok(Self {
@@ -360,6 +368,7 @@ impl Plan {
             cleaned: list.cleaned,
             lights,
             light_passes,
+            lamp_media,
             image_size,
             window,
             names: scene.objects.iter().map(|object| object.name.clone()).collect(),
@@ -398,11 +407,21 @@ impl Plan {
         self.aovs && self.samples > 1
     }
 
-    /// Whether that ray is followed to its end, since somebody counts what the rays of a pixel do; otherwise to the first
-    /// surface.
+    /// Whether that ray is followed to its end, since somebody counts what the rays of a pixel do, or asks for volumes that
+    /// may lie beyond a surface; otherwise to the first surface.
     #[must_use]
     pub fn follows_centers(&self) -> bool {
-        self.counts_work()
+        self.counts_work() || (self.shows_of_volumes() != 0 && self.scatters())
+    }
+
+    /// What rays look for beyond the first surface for channels of volumes: flags of a wave.
+    #[must_use]
+    pub fn shows_of_volumes(&self) -> u32 {
+        match (self.volumes.any_marched(), self.volumes.is_whole()) {
+            (true, true) if self.wants_along() => WAVE_VALUES,
+            (true, false) if self.wants_volume_depth() => WAVE_LOSSES,
+            _ => 0,
+        }
     }
 
     /// Whether any object's hits are refined.
@@ -429,6 +448,17 @@ impl Plan {
             emitted: [0.0; 3],
             depth: 0.0,
         }
+    }
+
+    /// The media of a light as kernels take them: how many, or `NONE` where that is not known, and which.
+    #[must_use]
+    pub fn lamp_media_of(&self, light: u32) -> (u32, [u32; MEDIA_WORDS as usize]) {
+        let mut words = [0; MEDIA_WORDS as usize];
+        let Some(media) = &self.lamp_media[light as usize] else { return (NONE, words) };
+        for (i, object) in media.iter().enumerate() {
+            words[i / 2] |= object << (16 * (i % 2));
+        }
+        (media.len() as u32, words)
     }
 
     /// Whether it is asked for where volumes take the camera's light.

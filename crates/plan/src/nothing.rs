@@ -10,7 +10,8 @@ use crate::Plan;
 use crate::crossings::votes;
 use crate::shapes::surface_slots;
 use kernels::layout::{
-    LIGHT_POINT, MATERIAL_DIFFUSE, NONE, PERSPECTIVE, VOLUME_EMITS, VOLUME_ISOSURFACE,
+    LIGHT_POINT, MATERIAL_DIFFUSE, MATERIAL_GLASS, NONE, PERSPECTIVE, VOLUME_EMITS,
+    VOLUME_ISOSURFACE,
 };
 use points::PointSet;
 use scene::{MaterialKind, Scene};
@@ -163,8 +164,14 @@ impl Asked<'_> {
 
     /// Whether rays end where they would begin to show something.
     fn has_no_bounces(&self) -> Option<String> {
+        // Surfaces between media of one index are passed without a bounce.
+        let around =
+            self.plan.camera_media.iter().map(|&object| self.plan.objects[object as usize].ior);
+        let around: Vec<[f32; 3]> = around.chain([[1.0; 3]]).collect();
         let scattering = |&object: &usize| {
-            self.plan.objects[object].material != MATERIAL_DIFFUSE && self.has_surface(object)
+            let info = &self.plan.objects[object];
+            let may_pass = info.material == MATERIAL_GLASS && around.contains(&info.ior);
+            info.material != MATERIAL_DIFFUSE && !may_pass && self.has_surface(object)
         };
         let object = (0..self.plan.objects.len()).find(scattering)?;
         (self.plan.wave.max_bounces == 0).then(|| {

@@ -9,14 +9,14 @@ use crate::media::{Media, ior_of, transmittance};
 use crate::real::{NO_HIT, Real, V3};
 use crate::surface_hit::surface_hit;
 use crate::volume::march;
-use kernels::layout::{MATERIAL_GLASS, MOST_CROSSINGS, NONE};
+use kernels::layout::{MATERIAL_GLASS, MOST_CROSSINGS, NONE, PASSED_NEAR};
 use plan::Plan;
 
 /// What of `arriving` comes to the start of a ray towards a light, which starts inside `media`. `account` sees each part
-/// of its way. `passed` is an object whose surface is not there, or `NONE`.
+/// of its way. The light is the plan's of this number. `passed` is an object whose surface is not there, or `NONE`.
 pub(crate) fn light_through<R: Real>(
     reference: &Reference<R>,
-    (plan, levels): (&Plan, &Levels<R>),
+    (plan, levels, light): (&Plan, &Levels<R>, usize),
     mut ray: Ray<R>,
     mut arriving: V3<R>,
     mut media: Media,
@@ -29,6 +29,10 @@ pub(crate) fn light_through<R: Real>(
     for crossings in 0.. {
         grid_trace(&mut ray, levels, &reference.lists, &reference.polynomials, false);
         account(&ray);
+        // The last part ends at the light: what that is not inside, the ray has left unseen, or was never in.
+        if let Some(lamp) = plan.lamp_media[light].as_ref().filter(|_| ray.hit_slot == NONE) {
+            media.retain(|object| lamp.contains(&object) || object == passed & !PASSED_NEAR);
+        }
         // Infinitely far away, rays are outside of everything: of a grazing one, the way out was not seen.
         let is_finite = ray.hit_t < R::of(NO_HIT);
         let medium = media.medium(objects).filter(|&medium| medium != passed).filter(|_| is_finite);

@@ -82,6 +82,11 @@ impl Media {
         }
     }
 
+    /// Only the members that stay, in their order.
+    pub fn retain(&mut self, stays: impl Fn(u32) -> bool) {
+        self.0.retain(|&member| stays(member));
+    }
+
     /// The same after the object is entered or left.
     #[must_use]
     pub fn toggled(&self, object: u32) -> Self {

@@ -44,14 +44,14 @@ pub fn point_lights<R: Real>(
                 if !may_be_seen(info, volumes, x) {
                     return;
                 }
-                for (of_light, light) in of.iter_mut().zip(&plan.lights) {
+                for (at, (of_light, light)) in of.iter_mut().zip(&plan.lights).enumerate() {
                     let sample = sample_light(light, x, [R::of(0.5); 2]);
                     let mut ray = Ray::new(x, sample.towards, &levels, NONE);
                     ray.passed = plan.passed_of(info.object);
                     ray.hit_t = sample.distance;
                     if plan.light_passes {
                         let all = V3::splat(R::of(1.0));
-                        let scene = (plan, &levels);
+                        let scene = (plan, &levels, at);
                         let [r, g, b] = light_through(
                             reference,
                             scene,

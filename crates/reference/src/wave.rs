@@ -22,7 +22,7 @@ use crate::surface_hit::Hit;
 use crate::volume::{Lighting, March, half_lost, is_whole, march};
 use kernels::layout::{
     CHANNELS_ALL, FilmPixel, MATERIAL_DIFFUSE, MATERIAL_GLASS, MOST_CROSSINGS, NONE,
-    SAMPLE_FRESNEL, TRANSPARENT_GLASS, WaveParams,
+    SAMPLE_FRESNEL, TRANSPARENT_GLASS, WAVE_LOSSES, WAVE_VALUES, WaveParams,
 };
 use plan::{Plan, Rays};
 
@@ -191,6 +191,8 @@ impl<R: Real> PixelTrace<'_, R> {
             path.depth = path.depth + march.depth;
             if from_camera {
                 self.film.along = self.along(ray, end, &path.media, &march).to_f32();
+            } else if path.channels & 1 != 0 && !path.reflected {
+                self.show_later(ray, end, &path.media, &march);
             }
         }
         let objects = &self.plan.objects;
@@ -241,6 +243,22 @@ impl<R: Real> PixelTrace<'_, R> {
         t.map_or(R::of(-1.0), |t| t * ray.direction.dot(V3::of_f32(self.params.forward)))
     }
 
+    /// The same of a later part of the way, where no part before had anything. Depth goes on from the first surface.
+    fn show_later(&mut self, ray: &Ray<R>, end: R, media: &Media, march: &March<R>) {
+        let (shows, shown) = (self.plan.shows_of_volumes(), self.film.along);
+        if shows == WAVE_VALUES && shown == 0.0 {
+            self.film.along = self.along(ray, end, media, march).to_f32();
+        } else if shows == WAVE_LOSSES && shown < 0.0 {
+            let along = self.along(ray, end, media, march);
+            if along >= R::of(0.0) {
+                let [x, y, z, depth] = self.film.position_depth;
+                let since = ray.origin - V3::of_f32([x, y, z]);
+                let before = R::of_f32(depth) + since.dot(V3::of_f32(self.params.forward));
+                self.film.along = (before + along).to_f32();
+            }
+        }
+    }
+
     fn lighting(&self) -> Option<Lighting<'_, R>> {
         self.plan
             .volumes
@@ -261,7 +279,7 @@ impl<R: Real> PixelTrace<'_, R> {
             };
             self.rays.shadow += 1;
             if self.plan.light_passes {
-                let (reference, scene) = (self.reference, (self.plan, self.levels));
+                let (reference, scene) = (self.reference, (self.plan, self.levels, i as usize));
                 let account = |ray: &Ray<R>| self.account(ray, None, 0, false);
                 irradiance = irradiance
                     + light_through(reference, scene, ray, arriving, media.clone(), NONE, account);

@@ -26,7 +26,7 @@ use crate::wave::WaveBuffers;
 use gpu::{Buffer, Device, Recorder};
 use kernels::layout::{
     FilmPixel, Hit, NONE, ObjectInfo, Path, Polynomial, SCENE_BLENDS, SCENE_LEVELS, SCENE_SKIPS,
-    VolumeStop, WAVE_FROM_CAMERA, WAVE_SHARES_PATH, WaveParams,
+    VolumeStop, WAVE_SHARES_PATH, WaveParams,
 };
 use plan::{CENTER, MAX_DISC_PAIRS, Picture, Plan, Rays, Window, camera_wave};
 use points::Watch;
@@ -380,9 +380,9 @@ impl Renderer {
             self.settle_hits(plan, params.ray_count, traced, stats, watch)?;
             self.isosurfaces(plan, params.ray_count, false, stats, watch)?;
             if !ends_at_first || plan.wants_along() {
-                let from_camera = params.flags & WAVE_FROM_CAMERA != 0;
                 let is_center = sample == CENTER || !plan.takes_centers();
-                let depths = from_camera && is_center && plan.wants_volume_depth();
+                let depths = is_center && plan.wants_volume_depth();
+                params.flags |= plan.shows_of_volumes();
                 let axis = depths.then_some(params.forward);
                 self.march(plan, params.ray_count, (false, axis), stats, watch)?;
             }
@@ -498,7 +498,7 @@ impl Renderer {
             self.passes.shadow_rays.record(&mut self.recorder, io, &params);
             self.shadows.passed();
             self.record_shadow_media(plan, &params, &paths);
-            self.send_to_light(plan, params.ray_count, Traced::Shadows, stats, watch)?;
+            self.send_to_light(plan, (params.ray_count, light), Traced::Shadows, stats, watch)?;
         }
         let io = ShadeIo {
             shadows: &self.shadows.current,

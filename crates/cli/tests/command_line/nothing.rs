@@ -159,6 +159,7 @@ fn a_scene_that_shows_something_passes_strictly() {
         of(&[SKY, BALL, glass]),
         of(&[LIT, BALL, glass, BALL, "transform = { translate = [3, 0, 0] }\n"]),
         of(&[grey, BALL, tinted]),
+        of(&["[render]\nmax_bounces = 0\n", grey, BALL, tinted, "ior = 1.0\n"]),
         of(&[grey, BALL, "[objects.material]\nkind = \"mirror\"\nreflectance = [0.9, 0.5, 0.1]\n"]),
         of(&["[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\n", LIT, BALL]),
         of(&["[camera]\neye = [0, 0, 1.2]\ntarget = [0, 0, 0]\nvertical_fov = 1.0\n", LIT, BALL]),

@@ -134,7 +134,7 @@ impl Renderer {
         self.shadows.passed();
         let object = plan.volumes.infos[params.volume as usize].object;
         let traced = Traced::PastObject(plan.passed_of(object));
-        self.send_to_light(plan, params.count, traced, stats, watch)?;
+        self.send_to_light(plan, (params.count, params.light), traced, stats, watch)?;
         self.record_point_light(plan, params, false);
         stats.add_kernels(&self.recorder.submit()?.passes);
         Ok(())

@@ -19,11 +19,11 @@ impl Renderer {
         }
     }
 
-    /// Shadow rays that have been started, to their light or to what blocks them, and through the volumes on their way.
+    /// Shadow rays that have been started, so many to this light or to what blocks them, and through the volumes on their way.
     pub(super) fn send_to_light(
         &mut self,
         plan: &Plan,
-        ray_count: u32,
+        (ray_count, light): (u32, u32),
         traced: Traced,
         stats: &mut FrameStats,
         watch: &dyn Watch,
@@ -32,7 +32,9 @@ impl Renderer {
             Traced::PastObject(object) => object,
             _ => NONE,
         };
-        let params = ShadowParams { ray_count, passed, counts: u32::from(passed == NONE) };
+        let (lamp_count, lamp_media) = plan.lamp_media_of(light);
+        let counts = u32::from(passed == NONE);
+        let params = ShadowParams { ray_count, passed, counts, lamp_count, lamp_media };
         let [mut alive, mut going] = [ray_count; 2];
         while going > 0 {
             self.trace_to_the_end(plan, [ray_count, alive], traced, stats, watch)?;
