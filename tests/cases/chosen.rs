@@ -7,6 +7,7 @@ use plan::{Choice, Plan, SceneImages};
 use points::PointSet;
 use scene::{Scene, Up};
 use std::path::Path;
+use std::slice::from_ref;
 use std::sync::Arc;
 
 /// Points that fill a ball evenly.
@@ -76,11 +77,11 @@ fn an_automatic_factor_is_by_the_depth_of_the_transfer_function_itself() {
     let set = with_attribute(set_of(lattice), "s", |p| p[0]);
     let stops = "transfer = [{ value = 0, color = [1, 1, 1], extinction = 0 }, { value = 1, color = [1, 0, 0], extinction = 1 }]\n\
                  radius = 0.06\n";
-    let auto = plan_of(&volume(&format!("{stops}extinction = \"auto\"")), &[set.clone()]);
+    let auto = plan_of(&volume(&format!("{stops}extinction = \"auto\"")), from_ref(&set));
     let factor = number(&auto, "volume.extinction");
     // Points reach 0.06 beyond: chords are up to 12 % longer.
     assert!((3.5..4.1).contains(&factor), "{factor}");
-    let given = plan_of(&volume(&format!("{stops}extinction = {factor:?}")), &[set.clone()]);
+    let given = plan_of(&volume(&format!("{stops}extinction = {factor:?}")), from_ref(&set));
     assert_eq!(auto.volumes, given.volumes);
     assert!(given.chosen.iter().all(|chosen| chosen.key != "volume.extinction"));
     let plain = plan_of(&volume(stops), &[set]);
@@ -98,7 +99,7 @@ fn what_was_chosen_is_the_same_when_it_is_given() {
            material = { albedo = \"attribute:t\" }\n";
     let plan = |overrides: &[String]| {
         let scene = Scene::from_toml(&text, Path::new("s.toml"), overrides).expect("a scene");
-        let sets: Vec<Arc<PointSet>> = vec![Arc::new(set.clone()); 2];
+        let sets: Vec<Arc<PointSet>> = [set.clone(), set.clone()].map(Arc::new).to_vec();
         Plan::new(&scene, &sets, &SceneImages::default(), None, Up::Y).expect("a plan")
     };
     let auto = plan(&[]);
@@ -138,7 +139,7 @@ fn a_logarithmic_scale_shows_logarithms() {
     let set = with_attribute(set, "log", |p| value(p).log10());
     let colors = |material: &str| {
         let text = format!("[[objects]]\npoints = \"a.ply\"\nmaterial = {{ {material} }}\n");
-        plan_of(&text, &[set.clone()])
+        plan_of(&text, from_ref(&set))
     };
     let log = colors("albedo = \"attribute:v\", scale = \"log\"");
     let linear = colors("albedo = \"attribute:log\"");
@@ -167,7 +168,7 @@ fn what_is_not_positive_is_at_the_lower_end_of_a_logarithmic_scale() {
             "[[objects]]\npoints = \"a.ply\"\nmaterial = {{ albedo = \"attribute:v\", scale = \"log\", color_map = \"gray\"{more} }}\n"
         )
     };
-    let plan = plan_of(&text(""), &[set.clone()]);
+    let plan = plan_of(&text(""), from_ref(&set));
     let chosen: Vec<String> = plan.chosen.iter().map(ToString::to_string).collect();
     assert_eq!(chosen, ["objects.0.material.value_range=[0.25, 16.0]"]);
     assert_eq!([0, 1, 2].map(|i| color_of(&plan, i)), [[0.0; 3]; 3]);
@@ -177,7 +178,7 @@ fn what_is_not_positive_is_at_the_lower_end_of_a_logarithmic_scale() {
     assert!((color_of(&plan, 3)[0] - third).abs() < 1e-6);
     assert!(color_of(&plan, 5)[0] < 0.0, "no number is marked");
     // With the greater end first, the lower end is the last colour.
-    let turned = plan_of(&text(", value_range = [16, 0.25]"), &[set.clone()]);
+    let turned = plan_of(&text(", value_range = [16, 0.25]"), from_ref(&set));
     assert_eq!([0, 1, 2, 4].map(|i| color_of(&turned, i)[0]), [1.0, 1.0, 1.0, 0.0]);
     // Nothing to show.
     let negative = with_attribute(set_of(vec![[0.0; 3], [1.0; 3]]), "v", |_| -1.0);
@@ -198,7 +199,7 @@ fn a_volume_has_a_logarithmic_scale_as_well() {
     });
     let keys =
         "color_map = \"gray\"\nscale = \"log\"\nvalue_range = [1e-4, 1e4]\nextinction = [0, 8]";
-    let plan = plan_of(&volume(keys), &[set.clone()]);
+    let plan = plan_of(&volume(keys), from_ref(&set));
     let stops = &plan.volumes.stops;
     assert_eq!(stops.len(), 129);
     for (i, stop) in stops.iter().enumerate() {
