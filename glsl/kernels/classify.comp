@@ -69,7 +69,10 @@ void main() {
     Media media = Media(at, path.media_count);
     if (scene_has(SCENE_ABSORBS)) {
         if (media.count > 0u) {
-            throughput *= transmittance(medium_without(media, NONE), found ? hit.t : NO_HIT);
+            uint medium = medium_without(media, NONE);
+            // Of a ray that grazes glass of the air's index, the way out may not have been seen.
+            medium = !found && ior_of(medium) == vec3(1.0) ? NONE : medium;
+            throughput *= transmittance(medium, found ? hit.t : NO_HIT);
             written_paths[at].throughput = throughput;
         }
     }

@@ -540,3 +540,21 @@ fn no_bounce_is_needed_to_pass_a_clear_skin() {
         assert_eq!(none.color, many.color, "{primary}");
     }
 }
+
+/// Before the background no ray that grazes a coarse ball is darker than the longest chord makes it: what the glass of a
+/// ray takes whose way out was missed is not infinite.
+#[test]
+fn rays_that_graze_a_coarse_ball_do_not_end_in_it() {
+    let bench = Bench::open();
+    for count in [200, 500, 1_500] {
+        let text = "[image]\nsize = [320, 240]\n[camera]\neye = [0.4, 0.9, 4.0]\ntarget = [0.0, 0.0, 0.0]\n\
+                    vertical_fov = 35.0\n[background]\ncolor = [1.0, 1.0, 1.0]\n[[objects]]\npoints = \"ball.ply\"\n\
+                    material = { kind = \"glass\", ior = 1.0, absorption = [0.5, 0.5, 0.5] }\n";
+        let plan = plan_of(text, &[set_of(fibonacci_sphere(count))]);
+        let film = bench.render(&plan).film;
+        let darkest = film.color.iter().map(|color| color[0]).fold(1.0, f32::min);
+        // A ball of few points bulges by less than a hundredth.
+        assert!(darkest > (-0.5f32 * 2.04).exp(), "{count}: {darkest}");
+        assert!(darkest < (-0.5f32 * 1.95).exp(), "{count}: {darkest}");
+    }
+}

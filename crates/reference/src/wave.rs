@@ -198,8 +198,10 @@ impl<R: Real> PixelTrace<'_, R> {
         let objects = &self.plan.objects;
         if !path.media.is_empty() {
             let way = hit.as_ref().map_or(R::of(NO_HIT), |(hit, _)| hit.t);
-            path.throughput =
-                path.throughput * transmittance(path.media.medium(objects), way, objects);
+            // Of a ray that grazes glass of the air's index, the way out may not have been seen.
+            let dims = |&medium: &u32| hit.is_some() || objects[medium as usize].ior != [1.0; 3];
+            let medium = path.media.medium(objects).filter(dims);
+            path.throughput = path.throughput * transmittance(medium, way, objects);
         }
         let Some((hit, object)) = hit else {
             self.write_background(&path, ray.direction, from_camera);
