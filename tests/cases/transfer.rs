@@ -222,7 +222,7 @@ fn warnings(keys: &str, set: &PointSet) -> Vec<String> {
 }
 
 /// Where features are missed, one line names the object, the step, and one that would do; the step that it names
-/// brings no warning, nor does the automatic one, nor a long one through a constant.
+/// brings no warning, nor does the automatic one, nor a long one through a constant, unless it passes by points.
 #[test]
 fn a_step_too_long_for_the_gradient_is_named() {
     let set = ball(20_000);
@@ -242,6 +242,33 @@ fn a_step_too_long_for_the_gradient_is_named() {
     let again = warnings(&format!("radius = 0.3\nstep = {step}\n"), &set);
     assert!(again.is_empty(), "{again:?}");
     let constant = with_attribute(set_of(set.positions.to_vec()), "s", |_| 2.0);
-    let none = warnings("radius = 0.3\nstep = 0.5\nvalue_range = [0, 4]\n", &constant);
+    let none = warnings("radius = 0.3\nstep = 0.3\nvalue_range = [0, 4]\n", &constant);
     assert!(none.is_empty(), "{none:?}");
+    let passing = warnings("radius = 0.3\nstep = 0.5\nvalue_range = [0, 4]\n", &constant);
+    let [line] = passing.as_slice() else { panic!("{passing:?}") };
+    assert!(
+        line.contains("longer than a point reaches, 0.3") && line.contains("set step = 0.3"),
+        "{line}"
+    );
+}
+
+/// A feature counts though it fills less than a hundredth of the volume; a single stray value does not.
+#[test]
+fn a_small_feature_needs_short_steps_and_a_stray_value_does_not() {
+    let set = ball(20_000);
+    let of = |keys: &str, scalar: &dyn Fn([f64; 3]) -> f64| {
+        let set = with_attribute(set_of(set.positions.to_vec()), "s", scalar);
+        warnings(keys, &set)
+    };
+    let narrow = "radius = 0.1\nstep = 0.09\n";
+    let edge = of(narrow, &|p| f64::from(u8::from(p[0] > 0.0)));
+    assert_eq!(edge.len(), 1, "an edge: {edge:?}");
+    let blob = of("radius = 0.2\nstep = 0.19\n", &|p| {
+        (-p.iter().map(|x| x * x).sum::<f64>() / 0.02).exp()
+    });
+    assert_eq!(blob.len(), 1, "a blob: {blob:?}");
+    let ramp = of(narrow, &|p| p[0]);
+    assert!(ramp.is_empty(), "{ramp:?}");
+    let stray = of(narrow, &|p| if p == set.positions[7] { 9.0 } else { p[0] });
+    assert!(stray.is_empty(), "{stray:?}");
 }

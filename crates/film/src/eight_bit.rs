@@ -67,6 +67,16 @@ fn opaque(film: &Film, tone: Tone) -> Vec<u8> {
     film.color.par_iter().flat_map_iter(|&[r, g, b, _]| [r, g, b].map(shown)).collect()
 }
 
+/// What 8 bits hold of each pixel: R, G, B, and alpha where the film is transparent, not divided by it.
+pub(crate) fn shown(film: &Film, tone: Tone) -> Vec<[u8; 4]> {
+    let byte = |c: f32| srgb_byte(tone.apply(c));
+    let of = |&[r, g, b, a]: &[f32; 4]| {
+        let alpha = if film.transparent { unit_byte(f64::from(a)) } else { 255 };
+        [byte(r), byte(g), byte(b), alpha]
+    };
+    film.color.par_iter().map(of).collect()
+}
+
 /// A pixel with the one alpha that PNG has room for: the mean where the channels have their own.
 fn with_one_alpha(film: &Film, at: usize) -> [f32; 4] {
     let [r, g, b, a] = film.color[at];

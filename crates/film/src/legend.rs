@@ -32,6 +32,8 @@ const INK: Color = [32; 3];
 const PAPER: Color = [255; 3];
 /// Labels of a bar at most, and at least where round numbers allow it.
 const MOST_LABELS: f64 = 8.0;
+/// Of a bar: how far labels are from each other at least.
+const APART: f64 = 0.055;
 
 /// A label at a place of a bar.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,7 +113,46 @@ fn marks([low, high]: [f64; 2], is_log: bool) -> Vec<Mark> {
     if low >= high {
         return vec![Mark { place: 0.5, label: short(low) }];
     }
-    if is_log { log_marks([low, high]) } else { linear_marks([low, high]) }
+    let round = if is_log { log_marks([low, high]) } else { linear_marks([low, high]) };
+    with_ends(round, [low, high])
+}
+
+/// The same with both ends of the range, where a round number is not there already. A label that is in the way of an end's
+/// gives way, and its tick stays.
+fn with_ends(mut marks: Vec<Mark>, range: [f64; 2]) -> Vec<Mark> {
+    for (value, place) in range.into_iter().zip([0.0, 1.0]) {
+        let is_there = |mark: &Mark| !mark.label.is_empty() && (mark.place - place).abs() < 1e-6;
+        if marks.iter().any(is_there) {
+            continue;
+        }
+        for mark in marks.iter_mut().filter(|mark| (mark.place - place).abs() < APART) {
+            mark.label.clear();
+        }
+        marks.push(Mark { place, label: end_label(value, range) });
+    }
+    marks.sort_by(|a, b| a.place.total_cmp(&b.place));
+    marks
+}
+
+/// An end of a range, in as many digits as it takes to see it beside the other.
+fn end_label(value: f64, [low, high]: [f64; 2]) -> String {
+    let size = low.abs().max(high.abs());
+    // Four digits of the range, or of the value where that is little of it.
+    let step = 10f64.powf((high - low).log10().floor() - 3.0);
+    if !(step.is_finite() && step > 0.0) || size >= 1e7 || size < 1e-4 {
+        return short(value);
+    }
+    let decimals = (-step.log10()).round().clamp(0.0, 9.0) as usize;
+    let text = format!("{value:.decimals$}");
+    let text = match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.'),
+        false => &text,
+    };
+    match text.trim_start_matches(['-', '0', '.']).is_empty() {
+        true if value == 0.0 => "0".to_owned(),
+        true => short(value),
+        false => minus(text.to_owned()),
+    }
 }
 
 /// The largest of 1, 2 and 5 times a power of ten that leaves no more labels than there is room for, from a spacing on.
@@ -271,11 +312,12 @@ mod tests {
 
     #[test]
     fn labels_are_round_numbers() {
-        let cases: [([f64; 2], &[&str]); 8] = [
+        let cases: [([f64; 2], &[&str]); 9] = [
             ([0.0, 1.0], &["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]),
-            ([-3.0, 12.0], &["−2", "0", "2", "4", "6", "8", "10", "12"]),
-            ([203.7, 291.2], &["220", "240", "260", "280"]),
-            ([0.013, 0.0171], &["0.013", "0.014", "0.015", "0.016", "0.017"]),
+            ([-3.0, 12.0], &["−3", "−2", "0", "2", "4", "6", "8", "10", "12"]),
+            ([203.7, 291.2], &["203.7", "220", "240", "260", "280", "291.2"]),
+            ([0.013, 0.0171], &["0.013", "0.014", "0.015", "0.016", "0.0171"]),
+            ([-0.000_123_456, 0.998_812], &["−0.0001", "0.2", "0.4", "0.6", "0.8", "0.9988"]),
             (
                 [412_345.6, 412_345.9],
                 &[
@@ -288,7 +330,10 @@ mod tests {
                     "412345.90",
                 ],
             ),
-            ([0.0, 65_535.0], &["0", "10000", "20000", "30000", "40000", "50000", "60000"]),
+            (
+                [0.0, 65_535.0],
+                &["0", "10000", "20000", "30000", "40000", "50000", "60000", "65535"],
+            ),
             ([0.0, 3e9], &["0", "5⋅10⁸", "1⋅10⁹", "1.5⋅10⁹", "2⋅10⁹", "2.5⋅10⁹", "3⋅10⁹"]),
             ([7.25, 7.25], &["7.25"]),
         ];
@@ -301,9 +346,9 @@ mod tests {
     fn logarithmic_labels_are_powers_of_ten() {
         let cases: [([f64; 2], &[&str]); 6] = [
             ([1e-4, 1e4], &["10⁻⁴", "0.001", "0.01", "0.1", "1", "10", "100", "1000", "10000"]),
-            ([0.5, 60.0], &["0.5", "1", "2", "5", "10", "20", "50"]),
-            ([1.2e-4, 3.8e-3], &["2⋅10⁻⁴", "5⋅10⁻⁴", "0.001", "0.002"]),
-            ([2.1, 7.9], &["3", "4", "5", "6", "7"]),
+            ([0.5, 60.0], &["0.5", "1", "2", "5", "10", "20", "60"]),
+            ([1.2e-4, 3.8e-3], &["0.00012", "2⋅10⁻⁴", "5⋅10⁻⁴", "0.001", "0.002", "0.0038"]),
+            ([2.1, 7.9], &["2.1", "3", "4", "5", "6", "7", "7.9"]),
             ([1e-30, 1e-12], &["10⁻³⁰", "10⁻²⁷", "10⁻²⁴", "10⁻²¹", "10⁻¹⁸", "10⁻¹⁵", "10⁻¹²"]),
             ([3.0, 3.0], &["3"]),
         ];

@@ -133,6 +133,13 @@ pub fn encode(
     }
 }
 
+/// What a file of 8 bits shows of each pixel: R, G and B in sRGB, and alpha where the film is transparent, else 255. R, G
+/// and B are not divided by alpha.
+#[must_use]
+pub fn shown_bytes(film: &Film, tone: Tone) -> Vec<[u8; 4]> {
+    eight_bit::shown(film, tone)
+}
+
 /// How many colour values of a film are finite and beyond [`HALF_MAX`], so that [`Style::half`] changes
 /// them by more than rounding.
 #[must_use]

@@ -2,12 +2,17 @@
 
 use crate::Volumes;
 use kernels::layout::{VOLUME_ISOSURFACE, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo};
+use rayon::prelude::*;
 use scene::Object;
 
 /// Points at which the gradient is asked for.
-const ASKED: usize = 1000;
+const ASKED: usize = 20_000;
+/// Part of them, and how many where they are few, that are steeper than what counts as steep: a stray value is a slope
+/// around one point, of all sizes of features no other is as small.
+const STEEPER: f64 = 0.003;
+const STEEPER_OF_FEW: usize = 60;
 /// How far the scalar may be from a straight line within a step, of its range.
-const STRAIGHT: f64 = 0.01;
+const STRAIGHT: f64 = 0.02;
 
 /// The points of a volume.
 fn points_of(volumes: &Volumes, info: &VolumeInfo) -> std::ops::Range<usize> {
@@ -93,21 +98,25 @@ pub(crate) fn bound_of_integrals(volumes: &Volumes, info: &VolumeInfo) -> [f64; 
 
 /// A warning where a step that a scene gives is too long for how fast the scalar changes. Within a step the scalar is
 /// taken to go straight from one end to the other. Its gradient g changes on the scale L of the kernel, so it departs
-/// from that by about g ℓ²/8L.
+/// from that by about g ℓ²/8L. A step longer than L passes by points, whatever their scalars.
 pub(crate) fn long_step(volumes: &Volumes, info: &VolumeInfo, object: &Object) -> Option<String> {
     let volume = object.volume.as_ref().filter(|_| info.mode != VOLUME_ISOSURFACE)?;
     volume.step?;
     let range = points_of(volumes, info);
     let asked = range.len().min(ASKED);
     let places = (0..asked).map(|i| range.start + i * range.len() / asked);
-    let found: Vec<(f64, [f64; 3])> =
-        places.filter_map(|i| at(volumes, info, f64s(volumes.points[i].position))).collect();
+    let places: Vec<usize> = places.collect();
+    let found: Vec<(f64, [f64; 3])> = (places.into_par_iter())
+        .filter_map(|i| at(volumes, info, f64s(volumes.points[i].position)))
+        .collect();
     let mut steepness: Vec<f64> = found
         .iter()
         .map(|(_, gradient)| gradient.iter().map(|along| along * along).sum::<f64>().sqrt())
         .collect();
     steepness.sort_by(f64::total_cmp);
-    let steep = *steepness.get(steepness.len() * 9 / 10)?;
+    let few = STEEPER_OF_FEW.min(steepness.len() / 10);
+    let steeper = few.max((STEEPER * steepness.len() as f64) as usize);
+    let steep = *steepness.get(steepness.len().checked_sub(steeper + 1)?)?;
     let border = (info.kernel != VOLUME_SHEPARD).then_some(0.0);
     let values = || found.iter().map(|(value, _)| *value).chain(border);
     let span = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
@@ -115,23 +124,35 @@ pub(crate) fn long_step(volumes: &Volumes, info: &VolumeInfo, object: &Object) -
         VOLUME_SPH => mean_length(volumes, info),
         _ => f64::from(info.square_radius).sqrt(),
     };
-    if !(span > 0.0 && steep > 0.0 && scale > 0.0) {
+    let step = f64::from(volumes.step);
+    if !(scale > 0.0) {
         return None;
     }
-    let good = (8.0 * STRAIGHT * scale * span / steep).sqrt().max(0.25 * scale);
-    let step = f64::from(volumes.step);
-    let off = steep * step * step / (8.0 * scale) / span;
-    (step > 1.01 * good).then(|| {
+    let good = match span > 0.0 && steep > 0.0 {
+        true => (8.0 * STRAIGHT * scale * span / steep).sqrt().max(0.25 * scale),
+        false => f64::INFINITY,
+    };
+    let why = if step > 1.01 * good {
+        let off = steep * step * step / (8.0 * scale) / span;
         format!(
-            "object '{}': a step of {} is too long for how fast '{}' changes: within one it is off a straight line by \
-             {:.0} % of its range, and features are missed; set step = {} or leave it out",
-            object.name,
-            short(step),
+            "too long for how fast '{}' changes: within one it is off a straight line by {:.0} % of its range",
             volume.scalar,
             (100.0 * off).clamp(1.0, 100.0),
-            short(good),
         )
-    })
+    } else if step > 1.01 * scale {
+        format!(
+            "longer than a point reaches, {}: rays pass by points between two samples",
+            short(scale)
+        )
+    } else {
+        return None;
+    };
+    Some(format!(
+        "object '{}': a step of {} is {why}, and features are missed; set step = {} or leave it out",
+        object.name,
+        short(step),
+        short(good.min(scale)),
+    ))
 }
 
 /// Twice the mean smoothing length: what the step of particles is a quarter of.

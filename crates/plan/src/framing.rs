@@ -20,6 +20,10 @@ const MIN_SINE: f64 = 1e-6;
 /// Widest and narrowest angle that is chosen for an eye that is given, in degrees.
 const WIDEST: f64 = 90.0;
 const NARROWEST: f64 = 0.001;
+/// How wide points are that lie along one line of sight, at most, of half the diagonal of their box.
+const LINE: f64 = 1e-6;
+/// Least distance of the nearest point from an eye that is chosen, of how wide the points are.
+const CLOSEST: f64 = 5e-4;
 /// Widest lens over the distance in focus.
 const MAX_APERTURE: f64 = 1000.0;
 /// Points that one thread takes at once.
@@ -277,16 +281,19 @@ impl<'a> Room<'a> {
     ) -> (DVec3, DVec3) {
         let center = target.unwrap_or(self.center);
         let tangents = [half_tangent * self.aspect, half_tangent];
-        let none = [[f64::NEG_INFINITY; 2]; 2]; // of +x, −x; of +y, −y
+        // Of +x, −x and of +y, −y; then of the same without the depth, and of +z, −z.
+        let none = [[f64::NEG_INFINITY; 2]; 5];
         let extremes_of = |part: &&[[f64; 3]]| {
             let mut extremes = none;
             for &point in *part {
                 let p = DVec3::from(point) - center;
                 let depth = p.dot(sight.forward);
+                extremes[4] = [extremes[4][0].max(depth), extremes[4][1].max(-depth)];
                 for (axis, at) in [p.dot(sight.right), p.dot(sight.above)].into_iter().enumerate() {
                     for (side, at) in [at, -at].into_iter().enumerate() {
                         let reach = at - tangents[axis] * depth;
                         extremes[axis][side] = extremes[axis][side].max(reach);
+                        extremes[2 + axis][side] = extremes[2 + axis][side].max(at);
                     }
                 }
             }
@@ -299,9 +306,14 @@ impl<'a> Room<'a> {
                 Some(_) => extremes[axis][0].max(extremes[axis][1]) / tangents[axis],
             })
             .fold(0.0, f64::max);
+        let wide = extremes[2].iter().chain(&extremes[3]).copied().fold(0.0, f64::max);
+        let distance = if wide > LINE * self.half_diagonal {
+            distance.max(extremes[4][1] + CLOSEST * wide)
+        } else {
+            // Points along one line of sight.
+            distance.max(1.05 * self.half_diagonal - (self.center - center).dot(sight.forward))
+        };
         // One point, or several in one place: any distance shows the same nothing.
-        let nearest = 1.05 * self.half_diagonal - (self.center - center).dot(sight.forward);
-        let distance = distance.max(nearest); // points along one line of sight
         let distance = if distance > 0.0 { distance } else { 1.0 };
         if let Some(target) = target {
             return (target - distance * sight.forward, target);

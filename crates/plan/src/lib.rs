@@ -54,7 +54,7 @@ pub use header_camera::{HeaderCamera, camera_of_matrices};
 pub use images::{Cleaned, SceneImages};
 pub use missing::{Lacking, Missing};
 pub use needs::{columns as point_columns, filter as point_filter, read_options};
-pub use nothing::{blank, nothing_seen};
+pub use nothing::{Shown, blank, nothing_seen};
 pub use picture::{Picture, Rays};
 pub use scales::ColorScale;
 pub use shapes::{ShapeKind, Shapes, scatter_kind};

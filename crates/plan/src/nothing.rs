@@ -3,8 +3,11 @@
 //!
 //! [`blank`] judges the finished picture, and catches what only rays find out.
 
+mod blank;
 mod sight;
 mod volumes;
+
+pub use blank::{Shown, blank};
 
 use crate::Plan;
 use crate::crossings::votes;
@@ -182,49 +185,6 @@ impl Asked<'_> {
             )
         })
     }
-}
-
-/// What is wrong with a picture that shows nothing, in a sentence which says what may be the cause; `None` where it shows
-/// something, or is smaller than 16 pixels.
-#[must_use]
-pub fn blank(film: &film::Film) -> Option<String> {
-    /// Fewer pixels may well be of one colour.
-    const FEWEST: usize = 16;
-    /// Part of the pixels that may show light in the dark; and faint light, along which surfaces lie.
-    const LEAKING: f64 = 0.005;
-    const GRAZING: f64 = 0.05;
-    const FAINT: f32 = 0.02;
-    let colors = film.color.as_slice();
-    let (first, rest) = colors.split_first().filter(|_| colors.len() >= FEWEST)?;
-    if colors.iter().all(|color| color[3] == 0.0) && film.object.iter().all(|object| *object < 0.0)
-    {
-        return Some(
-            "the picture shows nothing but the background: no ray met anything; objects may lie outside the picture, be \
-             smaller than a pixel, have no surface, or be transparent; render without [camera] to see where they are"
-                .to_owned(),
-        );
-    }
-    let rgb = |color: &[f32; 4]| [color[0], color[1], color[2]];
-    // Through the finest gaps of a surface a ray finds light, and where it only grazes the surface, not all of it is dark.
-    let hits = colors.iter().filter(|color| color[3] > 0.0).count();
-    let lit = |above: f32| {
-        let lit = colors.iter().filter(|color| rgb(color).iter().any(|x| *x > above)).count();
-        lit as f64 / hits.max(1) as f64
-    };
-    if hits >= FEWEST && lit(0.0) <= GRAZING && lit(FAINT) <= LEAKING {
-        return Some(
-            "the picture is black all over: no light reaches what is seen; the camera may be inside an object, the lights \
-             behind one or too weak, or what is seen has an albedo of 0; add a light of kind \"headlight\""
-                .to_owned(),
-        );
-    }
-    rest.iter().all(|color| rgb(color) == rgb(first)).then(|| {
-        format!(
-            "the picture is one colour all over, {:?}: what is seen may be only the inside of an object, a part of a flat \
-             one, or glass before one background; move camera.eye, or leave [camera] out",
-            rgb(first)
-        )
-    })
 }
 
 #[cfg(test)]

@@ -81,12 +81,23 @@ fn of_volume(
             let info = volumes.infos.iter().find(|info| info.object as usize == index)?;
             let at = |i: u32| {
                 let part = f64::from(i) / f64::from(COLORS - 1);
-                volumes.color_of(info, (range[0] + part * (range[1] - range[0])) as f32)
+                volumes.light_of(info, (range[0] + part * (range[1] - range[0])) as f32)
             };
-            let colors = (0..COLORS).map(at).collect();
+            let covers = stops.iter().any(|stop| stop.extinction > 0.0 && stop.color != [0.0; 3]);
+            let colors = shown((0..COLORS).map(at).collect(), covers);
             Some(ColorScale { object: index, attribute, colors, range, is_log: false })
         }
     }
+}
+
+/// The colours of what covers; of what only glows, its emission, scaled so that the greatest of its channels is 1.
+fn shown(lights: Vec<[[f32; 3]; 2]>, covers: bool) -> Vec<[f32; 3]> {
+    let greatest = lights.iter().flat_map(|light| light[1]).fold(0.0, f32::max);
+    let of = |[color, emission]: [[f32; 3]; 2]| match !covers && greatest > 0.0 {
+        true => emission.map(|x| x / greatest),
+        false => color,
+    };
+    lights.into_iter().map(of).collect()
 }
 
 /// A range may begin with its greater end; a scale does not.

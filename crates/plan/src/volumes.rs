@@ -336,13 +336,20 @@ impl Volumes {
 
     /// The colour that a volume's transfer function gives a scalar.
     pub(crate) fn color_of(&self, info: &VolumeInfo, scalar: f32) -> [f32; 3] {
+        self.light_of(info, scalar)[0]
+    }
+
+    /// The colour and the emission that a volume's transfer function gives a scalar.
+    pub(crate) fn light_of(&self, info: &VolumeInfo, scalar: f32) -> [[f32; 3]; 2] {
         let first = info.first_stop as usize;
         let stops = &self.stops[first..first + info.stop_count as usize];
         let above = stops[1..].partition_point(|stop| stop.value <= scalar);
         let (from, to) = (&stops[above], &stops[(above + 1).min(stops.len() - 1)]);
         let span = to.value - from.value;
         let part = if span > 0.0 { ((scalar - from.value) / span).clamp(0.0, 1.0) } else { 0.0 };
-        [0, 1, 2].map(|i| from.color[i] + part * (to.color[i] - from.color[i]))
+        let mixed =
+            |from: [f32; 3], to: [f32; 3]| [0, 1, 2].map(|i| from[i] + part * (to[i] - from[i]));
+        [mixed(from.color, to.color), mixed(from.emission, to.emission)]
     }
 
     /// Which points are whose: of each volume its object and the range of its points.

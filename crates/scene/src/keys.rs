@@ -386,7 +386,7 @@ pub(crate) static BACKGROUND: Table = Table {
             Kind::Vector(numbers(-1e6, 1e6, "degrees")),
             Value("[0.0, 0.0, 0.0]"),
             "Turns the environment about the world's fixed axes x, then y, then z, right-handed, as \
-             `transform.rotate` turns an object.",
+             `transform.rotate` turns an object; an error without one.",
         ),
     ],
 };

@@ -84,10 +84,10 @@ impl Scene {
         of_picture: bool,
     ) -> Result<Scene, SceneError> {
         let mut document = document_of(source.text, source.file)?;
-        let mut scene = checked(&mut document, folder, root, source)?;
+        let (mut scene, missing) = checked(&mut document, folder, root, source)?;
         models::find(&mut scene, models_folder().as_deref());
         root::find(&mut scene, root);
-        files_exist(&document, &scene, source, (root, of_picture))?;
+        files_exist(&document, &scene, source, (root, of_picture), missing)?;
         Ok(scene)
     }
 
@@ -96,7 +96,11 @@ impl Scene {
     pub fn from_toml(text: &str, file: &Path, overrides: &[String]) -> Result<Scene, SceneError> {
         let folder = file.parent().unwrap_or(Path::new(""));
         let mut document = document_of(text, file)?;
-        checked(&mut document, folder, None, &Source { file, text, overrides })
+        let source = Source { file, text, overrides };
+        match checked(&mut document, folder, None, &source)? {
+            (scene, missing) if missing.is_empty() => Ok(scene),
+            (_, missing) => Err(SceneError::problems(missing, &source)),
+        }
     }
 
     /// The scene that a point file rendered directly means: one object with defaults, no camera
@@ -128,7 +132,7 @@ impl Scene {
     fn around(points: &Path, key: [f64; 3], overrides: &[String]) -> Result<Scene, SceneError> {
         let source = Source { file: points, text: "", overrides };
         let mut document = point_file_document(points, key);
-        let mut scene = checked(&mut document, Path::new(""), None, &source)?;
+        let (mut scene, missing) = checked(&mut document, Path::new(""), None, &source)?;
         models::find(&mut scene, models_folder().as_deref());
         let key_light = document.get("lights").and_then(|list| list.items().first());
         let direction = key_light.and_then(|light| light.get("direction"));
@@ -140,7 +144,7 @@ impl Scene {
         {
             object.points = points.to_path_buf();
         }
-        files_exist(&document, &scene, &source, (None, false))?;
+        files_exist(&document, &scene, &source, (None, false), missing)?;
         Ok(scene)
     }
 }
@@ -190,28 +194,29 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Overrides, then checks, then the scene.
+/// Overrides, then checks, then the scene, with which of the files of transfer functions are missing.
 fn checked(
     document: &mut Node,
     folder: &Path,
     root: Option<&Path>,
     source: &Source<'_>,
-) -> Result<Scene, SceneError> {
+) -> Result<(Scene, Vec<Problem>), SceneError> {
     let mut problems = Vec::new();
     for (index, text) in source.overrides.iter().enumerate() {
         problems.extend(crate::overrides::apply(document, index, text).err());
     }
     crate::preset::apply(document);
     // What is wrong in a file of its own comes first: the scene is right if that is.
-    problems.extend(crate::transfer_file::insert(document, folder, root)?);
+    let missing = crate::transfer_file::insert(document, folder, root)?;
     problems.extend(crate::check::check(document));
     if !problems.is_empty() {
+        problems.extend(missing);
         return Err(SceneError::problems(problems, source));
     }
     let scene = scene(&Reader::new(&SCENE, Some(document)), folder);
     match crate::inside::problem(document, &scene) {
         Some(problem) => Err(SceneError::problems(vec![problem], source)),
-        None => Ok(scene),
+        None => Ok((scene, missing)),
     }
 }
 
@@ -220,15 +225,15 @@ fn models_folder() -> Option<PathBuf> {
     env::var_os(MODELS_VARIABLE).filter(|folder| !folder.is_empty()).map(PathBuf::from)
 }
 
-/// Every file that the scene names is there: point files and images.
+/// Every file that the scene names is there: point files and images, beside those that are known to be missing.
 fn files_exist(
     document: &Node,
     scene: &Scene,
     source: &Source<'_>,
     (root, of_picture): (Option<&Path>, bool),
+    mut problems: Vec<Problem>,
 ) -> Result<(), SceneError> {
     let nodes = document.get("objects").map_or(&[][..], Node::items);
-    let mut problems = Vec::new();
     let models = models_folder();
     let mut require = |file: &Path, written: &str, what: &str, origin: Origin, path: String| {
         // A point file rendered directly is looked for where it says, and named by the message already.

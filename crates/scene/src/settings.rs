@@ -38,11 +38,11 @@ impl Scene {
         write_render(out, &self.render)?;
         writeln!(out, "[background]")?;
         match &self.background.environment {
-            Some(image) => writeln!(out, "environment = {}", quoted(&image.as_written))?,
+            Some(image) => {
+                writeln!(out, "environment = {}", quoted(&image.as_written))?;
+                writeln!(out, "rotate = {:?}", self.background.rotate)?;
+            }
             None => writeln!(out, "color = {:?}", self.background.color)?,
-        }
-        if self.background.environment.is_some() || self.background.rotate != [0.0; 3] {
-            writeln!(out, "rotate = {:?}", self.background.rotate)?;
         }
         for light in &self.lights {
             write_light(out, light)?;

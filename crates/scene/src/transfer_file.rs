@@ -2,15 +2,18 @@
 
 use crate::SceneError;
 use crate::check::check_as;
-use crate::document::{Node, Value};
+use crate::document::{Node, Value, parse_value};
 use crate::error::{Problem, Source};
 use crate::keys::TRANSFER_FILE;
 use crate::load::{document_of, read_text, what_is_missing};
 use crate::root;
 use std::path::Path;
 
+/// Stand in the place of those that are missing, so that the rest of the scene is checked.
+const STAND_IN: &str = "[{ value = 0.0, color = [0.0, 0.0, 0.0], extinction = 0.0 }]";
+
 /// Puts the stops of every file that a volume names as its `transfer` in the name's place. Fails at the
-/// first file that is no transfer function; says which are missing.
+/// first file that is no transfer function; says which are missing, whose place has other stops then.
 pub(crate) fn insert(
     document: &mut Node,
     folder: &Path,
@@ -28,7 +31,11 @@ pub(crate) fn insert(
         let advice = root::advice(root, name, false);
         if let Some(message) = what_is_missing(&file, "a file of a transfer function", advice) {
             let path = format!("objects[{index}].volume.transfer");
-            problems.push(Problem { origin: node.origin, path, message });
+            let origin = node.origin;
+            problems.push(Problem { origin, path, message });
+            if let Some(stand_in) = parse_value(STAND_IN, origin) {
+                *node = stand_in;
+            }
         } else {
             *node = stops_of(&file)?.moved(node.origin);
         }

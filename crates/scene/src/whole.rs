@@ -134,6 +134,11 @@ pub(crate) fn background_is_one(background: &Reader<'_>) -> Result<(), Fault> {
             "environment",
             "found both color and environment, expected one of them; remove one".into(),
         )),
+        (_, None) if background.vector("rotate") != [0.0; 3] => Err((
+            "rotate",
+            "found angles, expected none without environment, which they turn; add environment, or remove rotate"
+                .into(),
+        )),
         _ => Ok(()),
     }
 }

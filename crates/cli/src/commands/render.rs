@@ -135,7 +135,11 @@ fn render(
     let wall = started.elapsed();
     warn_of_missing_surfaces(&plan, &built, progress);
     // Of a part that was asked for, or where it is known why, nothing is no surprise.
-    let blank = plan::blank(&frame.film).filter(|_| nothing.is_empty() && args.crop.is_none());
+    let in_eight_bits =
+        args.outputs.iter().any(|path| args.format_of(path).ok() != Some(FileFormat::Exr));
+    let shown = plan::Shown::of(&plan, in_eight_bits.then(|| args.tone()));
+    let blank =
+        plan::blank(&frame.film, shown).filter(|_| nothing.is_empty() && args.crop.is_none());
     if let Some(line) = blank {
         progress.warn(&line);
     }

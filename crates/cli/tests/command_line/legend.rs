@@ -102,3 +102,20 @@ fn a_legend_of_nothing_and_of_another_format_are_errors() {
         .fails_with(2, &["--legend", "attribute:NAME"]);
     assert_eq!(folder.names(), before, "nothing is written");
 }
+
+/// What only glows has the colours of its emission in its legend, the brightest channel of which is 1.
+#[test]
+fn a_legend_of_what_glows_shows_its_emission() {
+    let folder = folder();
+    let stops = "[{ value = 0, emission = [0, 4, 0] }, { value = 1, emission = [2, 0, 0] }]";
+    let scene = format!(
+        "image.size = [8, 6]\n[[objects]]\npoints = \"ball.ply\"\nvolume = {{ scalar = \"z\", transfer = {stops} }}\n"
+    );
+    folder.write("glow.toml", &scene);
+    render(&folder, &["glow.toml", "-o", "a.png", "--legend", "l.png"]).succeeds();
+    let legend = film::read_image(&folder.path().join("l.png")).expect("a picture");
+    let film::Texels::Srgb8(texels) = &legend.texels else { panic!("sRGB") };
+    assert!(texels.contains(&[0, 255, 0]), "the lower end is green");
+    // 2 of 4 is 188 in sRGB.
+    assert!(texels.contains(&[188, 0, 0]), "the upper end is red");
+}

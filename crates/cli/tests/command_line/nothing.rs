@@ -8,6 +8,8 @@ const LIT: &str = "[[lights]]\nkind = \"headlight\"\nat_target = [1, 1, 1]\n";
 const FRONT: &str = "[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n";
 const VOLUME: &str = "[[objects]]\npoints = \"filled.csv\"\n[objects.volume]\nscalar = \"s\"\n";
 const MAP: &str = "color_map = \"viridis\"\nextinction = [0.0, 5.0]\n";
+const GLOW: &str =
+    "transfer = [{ value = 0, emission = [0, 0, 0] }, { value = 1, emission = [1, 0.3, 0] }]\n";
 const SKY: &str = "[background]\nenvironment = \"sky.png\"\n";
 
 fn folder() -> Folder {
@@ -77,6 +79,15 @@ fn a_scene_that_shows_nothing_is_named_and_refused() {
         (
             of(&[&FRONT.replace("[0, 0, 0]", "[9, 0, 5]"), LIT, BALL]),
             ["lie beside it", "camera.target"],
+        ),
+        // Just beside it: at 5 from the eye, the picture ends at 2.4.
+        (
+            of(&[&FRONT.replace("[0, 0, 0]", "[5.5, 0, 0]"), LIT, BALL]),
+            ["lie beside it", "camera.target"],
+        ),
+        (
+            of(&["[camera]\neye = [3, 2, 5]\nview = \"left\"\n", LIT, BALL]),
+            ["the camera looks away", "remove camera.view"],
         ),
         (
             of(&[
@@ -167,6 +178,9 @@ fn a_scene_that_shows_something_passes_strictly() {
         of(&[LIT, VOLUME, "kernel = \"sum\"\nmode = \"isosurface\"\niso = 0.5\n"]),
         of(&[VOLUME, MAP]),
         of(&[VOLUME, MAP, "value_range = [0.0, 0.5]\n"]),
+        // It sends light and covers nothing.
+        of(&[VOLUME, GLOW]),
+        of(&[FRONT, SKY, VOLUME, GLOW]),
         of(&[
             "[[lights]]\nkind = \"point\"\nposition = [0, 0, 4]\nintensity = [50, 50, 50]\n",
             BALL,
@@ -197,6 +211,38 @@ fn a_picture_that_shows_nothing_is_named() {
     let corner = ["ball.ply", "-o", "c.png", "--crop", "0,0,6,6", "--strict"];
     let ran = render(&folder, &corner).succeeds();
     assert!(warnings(&ran).is_empty(), "{}", ran.stderr);
+}
+
+/// An EXR has what 8 bits do not show, so that the warning is for a PNG or a JPEG only.
+#[test]
+fn what_eight_bits_do_not_show_is_named() {
+    let folder = folder();
+    let light = |numbers: &str| {
+        format!(
+            "{FRONT}[[lights]]\nkind = \"point\"\nposition = [0, 5000, 500]\nintensity = {numbers}\n{BALL}"
+        )
+    };
+    let thin = format!("{VOLUME}color_map = \"viridis\"\nextinction = 1e-7\n");
+    let white = "transfer = [{ value = 0, color = [1, 1, 1], extinction = 2 }]\n";
+    let white = format!("[background]\ncolor = [1, 1, 1]\n{VOLUME}{white}");
+    for (text, words) in [
+        (light("[3, 3, 3]"), ["black all over in 8 bits", "give --exposure"]),
+        (thin, ["nothing but the background in 8 bits", "raise the extinction"]),
+        (white, ["all over", "colo"]),
+        (light("[1e12, 1e12, 1e12]"), ["", ""]),
+    ] {
+        folder.write("scene.toml", &text);
+        let ran = render(&folder, &["scene.toml", "-o", "a.png"]).succeeds();
+        match warnings(&ran).as_slice() {
+            [line] => assert!(words.iter().all(|word| line.contains(word)), "{line}"),
+            none => assert!(none.is_empty() && words[0].is_empty(), "{text}: {}", ran.stderr),
+        }
+        let ran = render(&folder, &["scene.toml", "-o", "a.exr"]).succeeds();
+        assert!(!ran.stderr.contains("8 bits"), "{text}: {}", ran.stderr);
+    }
+    folder.write("scene.toml", &light("[3, 3, 3]"));
+    let brighter = ["scene.toml", "-o", "a.png", "--exposure", "24", "--strict"];
+    render(&folder, &brighter).succeeds();
 }
 
 /// No scene of the repository, and no file of the shared data, is said to show nothing.

@@ -81,7 +81,7 @@ fn options_that_set_scene_values_are_named_as_typed() {
     };
     render(&["--size", "0x480"]).fails_with(2, &["--size 0x480", "image.size"]);
     render(&["--size", "20000x1"]).fails_with(2, &["--size 20000x1", "16384"]);
-    render(&["--samples", "0"]).fails_with(2, &["--samples 0", "image.samples"]);
+    render(&["--samples", "0"]).fails_with(2, &["--samples <N>", "'0'", "at least 1"]);
     render(&["--set", "image.sice=3"]).fails_with(2, &["--set image.sice=3", "size"]);
     render(&["--crop", "600,0,100,10"]).fails_with(2, &["--crop 600,0,100,10", "640x480"]);
     render(&["--crop", "0,0,0,10"]).fails_with(2, &["--crop 0,0,0,10"]);

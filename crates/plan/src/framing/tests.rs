@@ -80,6 +80,58 @@ fn framing_holds_every_point_and_wastes_no_room() {
     }
 }
 
+/// Even points of a ball.
+fn ball() -> Vec<[f64; 3]> {
+    let turn = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    let of = |i: u32| {
+        let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 3000.0;
+        let (sin, cos) = (turn * f64::from(i)).sin_cos();
+        let across = (1.0 - z * z).sqrt();
+        [across * cos, across * sin, z]
+    };
+    (0..3000).map(of).collect()
+}
+
+/// Wide angles and wide pictures are filled as others are, though the eye is near then; it is outside the points.
+#[test]
+fn wide_angles_and_wide_pictures_are_filled() {
+    let rod: Vec<[f64; 3]> =
+        (0..100).map(|i| [f64::from(i) / 50.0 - 0.99, 0.02 * f64::from(i % 2), 0.0]).collect();
+    let cases = [
+        (ball(), 40.0, [128, 128]),
+        (ball(), 72.0, [128, 128]),
+        (ball(), 90.0, [128, 128]),
+        (ball(), 120.0, [64, 48]),
+        (ball(), 160.0, [64, 48]),
+        (rod, 40.0, [640, 80]),
+    ];
+    for (points, fov, size) in cases {
+        let bounds = [f64::min as fn(f64, f64) -> f64, f64::max].map(|of| {
+            [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).reduce(of).expect("points"))
+        });
+        let sets = [World::new(points.clone())];
+        let subject = Subject { sets: &sets, bounds, image_size: size, up: Up::Y };
+        let keys = CameraKeys {
+            vertical_fov: Some(fov),
+            view: Some(ViewFrom::Front),
+            ..CameraKeys::default()
+        };
+        let camera = complete(&keys, &subject).expect("a camera");
+        let [right, above, ahead] = frame_of(sight(&camera), camera.up.into());
+        let tangent = (0.5 * fov.to_radians()).tan();
+        let aspect = f64::from(size[0]) / f64::from(size[1]);
+        let mut fullest = 0.0f64;
+        for point in points {
+            let p = DVec3::from(point) - DVec3::from(camera.eye);
+            let depth = p.dot(ahead);
+            assert!(depth > 0.0, "{fov} {size:?}: {point:?} is not ahead");
+            let reach = (p.dot(right).abs() / aspect).max(p.dot(above).abs()) / (tangent * depth);
+            fullest = fullest.max(reach);
+        }
+        assert!((fullest - FRAMING_FILL).abs() < 0.02, "{fov} {size:?}: {fullest}");
+    }
+}
+
 #[test]
 fn without_keys_the_view_is_the_usual_one() {
     let camera = framed(CameraKeys::default(), SIZES[0], Up::Z).expect("a camera");

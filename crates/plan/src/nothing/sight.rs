@@ -1,16 +1,19 @@
 //! Whether anything lies in the picture, and is large enough to be seen there.
 
 use super::Asked;
-use kernels::layout::{CameraParams, ORTHOGRAPHIC, Point};
+use crate::Plan;
+use kernels::layout::{ORTHOGRAPHIC, Point};
 use points::{Cloud, Shapes};
 use rayon::prelude::*;
 
-/// Points whose common ball stands for what is drawn of them.
-const TOGETHER: usize = 8;
-/// Of the ball's radius: what surfaces reach beyond their points.
-const REACH: f64 = 4.0;
-/// Pixels beside the picture from which samples may come.
-const RIM: f64 = 8.0;
+/// Points before and after one in memory, where they are in order of space, of which it is asked how far they are.
+const AROUND: usize = 8;
+/// Which of the nearest of these says how far points are from each other.
+const NEAREST: usize = 3;
+/// What surfaces reach beyond their points, of how far these are from each other.
+const REACH: f64 = 2.0;
+/// Pixels beside the picture from which samples may come, at least.
+const RIM: f64 = 0.5;
 /// Pixels that all of an object covers at most, if it is not seen.
 const SMALL: f64 = 0.25;
 
@@ -52,10 +55,12 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 impl Frustum {
-    fn of(camera: &CameraParams) -> Self {
+    fn of(plan: &Plan) -> Self {
+        let camera = &plan.camera;
         let pixel = f64::from(camera.scale);
+        let rim = plan.filter.iter().map(|at| f64::from(at.abs())).fold(RIM, f64::max);
         let half =
-            [camera.half_width, camera.half_height].map(|half| pixel * (f64::from(half) + RIM));
+            [camera.half_width, camera.half_height].map(|half| pixel * (f64::from(half) + rim));
         Self {
             eye: camera.eye.map(f64::from),
             axes: [camera.right, camera.up, camera.forward].map(|axis| axis.map(f64::from)),
@@ -95,10 +100,15 @@ impl Frustum {
 /// A warning where the camera looks away from everything.
 pub(super) fn is_out_of_sight(of: &Asked<'_>) -> Option<String> {
     let plan = of.plan;
-    let frustum = Frustum::of(&plan.camera);
+    let frustum = Frustum::of(plan);
     let balls = || surfaces(&plan.cloud, &plan.shapes).chain(volumes(of));
     let all: Vec<Part<'_>> = balls().collect();
-    if all.is_empty() || all.par_iter().any(|part| part.any(&|ball| frustum.meets(ball))) {
+    let is_seen = |ball: &Ball| frustum.meets(ball);
+    // Most often a point is in the picture, and nothing has to be known of its neighbours.
+    if all.is_empty()
+        || all.par_iter().any(|part| part.any_place(&is_seen))
+        || all.par_iter().any(|part| part.any(&is_seen))
+    {
         return None;
     }
     let [low, high] = plan.cloud.bounds;
@@ -109,9 +119,18 @@ pub(super) fn is_out_of_sight(of: &Asked<'_>) -> Option<String> {
         false => "behind the camera",
     };
     let [x, y, z] = middle.map(|at| short(at, low, high));
+    let keys = &of.scene.camera;
+    // What turns the camera away is the direction, where one is given.
+    let advice = match keys.target {
+        None if keys.view.is_some() => format!(
+            "remove camera.view, so that it looks from camera.eye at their middle, [{x}, {y}, {z}], or leave camera.eye out"
+        ),
+        _ => format!(
+            "set camera.target to their middle, [{x}, {y}, {z}], or leave camera.eye or camera.target out"
+        ),
+    };
     Some(format!(
-        "nothing is in the picture: the camera looks away from all objects, which lie {where_they_are}; set camera.target to \
-         their middle, [{x}, {y}, {z}], or leave camera.eye or camera.target out"
+        "nothing is in the picture: the camera looks away from all objects, which lie {where_they_are}; {advice}"
     ))
 }
 
@@ -135,34 +154,50 @@ enum Part<'a> {
 }
 
 impl Part<'_> {
-    /// Whether any of the balls around eight points and what is drawn of them is as asked.
-    fn any(&self, is: &dyn Fn(&Ball) -> bool) -> bool {
-        // The last are taken with those before, since one point alone says nothing of what it reaches.
-        let windows = |count: usize| {
-            (0..count).step_by(TOGETHER).map(move |first| {
-                let first = first.min(count.saturating_sub(TOGETHER));
-                first..(first + TOGETHER).min(count)
-            })
-        };
-        let of = |points: &[Point]| Ball::around(points.iter().map(|point| point.position));
+    /// Whether any of the points is as asked, without what is drawn of it.
+    fn any_place(&self, is: &dyn Fn(&Ball) -> bool) -> bool {
+        let at = |place: [f32; 3]| is(&Ball { center: place.map(f64::from), radius: 0.0 });
         match self {
-            Self::Surface(points) => windows(points.len()).any(|window| {
-                let mut ball = of(&points[window]);
-                ball.radius *= REACH;
-                is(&ball)
-            }),
-            Self::Shapes(points, radii) => windows(points.len()).any(|window| {
-                let mut ball = of(&points[window.clone()]);
-                ball.radius += f64::from(radii[window].iter().copied().fold(0.0, f32::max));
-                is(&ball)
-            }),
-            Self::Volume(points, reach) => windows(points.len()).any(|window| {
-                let mut ball = Ball::around(points[window].iter().map(|point| point.position));
-                ball.radius += reach;
-                is(&ball)
-            }),
+            Self::Surface(points) | Self::Shapes(points, _) => {
+                points.iter().any(|point| at(point.position))
+            }
+            Self::Volume(points, _) => points.iter().any(|point| at(point.position)),
         }
     }
+
+    /// Whether any of the balls around points, which hold what is drawn of them, is as asked.
+    fn any(&self, is: &dyn Fn(&Ball) -> bool) -> bool {
+        let ball = |place: [f32; 3], radius: f64| Ball { center: place.map(f64::from), radius };
+        match self {
+            Self::Surface(points) => (0..points.len())
+                .any(|at| is(&ball(points[at].position, REACH * spacing(points, at)))),
+            Self::Shapes(points, radii) => (points.iter().zip(*radii))
+                .any(|(point, radius)| is(&ball(point.position, f64::from(*radius)))),
+            Self::Volume(points, reach) => {
+                points.iter().any(|point| is(&ball(point.position, *reach)))
+            }
+        }
+    }
+}
+
+/// How far the points around one are: the distance of the third nearest of those that lie beside it in memory. Order in
+/// space leaps here and there, but seldom on both sides of a point.
+fn spacing(points: &[Point], at: usize) -> f64 {
+    let around = at.saturating_sub(AROUND)..(at + AROUND + 1).min(points.len());
+    let from = points[at].position;
+    let mut nearest = [f64::INFINITY; NEAREST];
+    let others = around.filter(|other| *other != at);
+    for other in others {
+        let to = points[other].position;
+        let square = (0..3).map(|axis| f64::from(to[axis] - from[axis]).powi(2)).sum::<f64>();
+        let after = nearest.partition_point(|known| *known <= square);
+        if after < NEAREST {
+            nearest[after..].rotate_right(1);
+            nearest[after] = square;
+        }
+    }
+    let known = nearest.into_iter().filter(|square| square.is_finite());
+    known.fold(0.0, f64::max).sqrt()
 }
 
 /// Points that one thread takes at once.
@@ -193,7 +228,7 @@ fn volumes<'a>(of: &'a Asked<'_>) -> impl Iterator<Item = Part<'a>> {
 /// Warnings of objects in the picture that are too small for it.
 pub(super) fn too_small(of: &Asked<'_>) -> Vec<String> {
     let plan = of.plan;
-    let frustum = Frustum::of(&plan.camera);
+    let frustum = Frustum::of(plan);
     let mut found = Vec::new();
     for (index, name) in plan.names.iter().enumerate() {
         let slots = plan.cloud.objects[index];

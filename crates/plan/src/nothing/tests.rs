@@ -21,7 +21,8 @@ fn film(color: Vec<[f32; 4]>) -> Film {
 }
 
 fn says(color: Vec<[f32; 4]>) -> Option<String> {
-    blank(&film(color)).map(|line| line.split(':').next().unwrap_or_default().to_owned())
+    blank(&film(color), Shown::default())
+        .map(|line| line.split(':').next().unwrap_or_default().to_owned())
 }
 
 #[test]
@@ -61,4 +62,69 @@ fn pictures_with_something_are_not_named() {
     assert_eq!(says(silhouette), None);
     // Fewer pixels than say anything.
     assert_eq!(says(vec![[0.0; 4]; 4]), None);
+}
+
+fn says_as(color: Vec<[f32; 4]>, shown: Shown) -> Option<String> {
+    blank(&film(color), shown).map(|line| line.split(':').next().unwrap_or_default().to_owned())
+}
+
+/// Light that covers nothing has an alpha of 0.
+#[test]
+fn what_only_glows_is_seen_by_its_colors() {
+    let glowing = Shown { glows: true, ..Shown::default() };
+    let mut glow = vec![[0.0; 4]; 64];
+    glow[20..40].fill([0.3, 0.1, 0.0, 0.0]);
+    assert_eq!(says_as(glow.clone(), glowing), None);
+    assert_eq!(says_as(glow, Shown { eight_bit: Some(film::Tone::default()), ..glowing }), None);
+    let nothing = "the picture shows nothing but the background";
+    assert_eq!(says_as(vec![[0.0; 4]; 64], glowing).as_deref(), Some(nothing));
+}
+
+/// 8 bits show no less than half a step: 0.5/255/12.92 = 1.5e-4 above black, and about 0.0045 below white.
+#[test]
+fn what_eight_bits_do_not_show_is_named_where_a_file_has_them() {
+    let tone = film::Tone::default();
+    let in_eight = Shown { eight_bit: Some(tone), ..Shown::default() };
+    let half_of = |one: [f32; 4], other: [f32; 4]| -> Vec<[f32; 4]> {
+        (0..64).map(|i| if i % 2 == 0 { one } else { other }).collect()
+    };
+    let dark = [0.0, 0.0, 0.0, 0.0];
+    for (one, other, expected) in [
+        ([1.4e-4, 0.0, 0.0, 1.0], dark, Some("the picture is black all over in 8 bits")),
+        ([1.6e-4, 0.0, 0.0, 1.0], dark, None),
+        (
+            [3.0, 1.0, 1.0, 1.0],
+            [0.999, 1.0, 1.0, 0.0],
+            Some("the picture is white all over in 8 bits"),
+        ),
+        ([1.0, 1.0, 1.0, 1.0], [0.99, 1.0, 1.0, 0.0], None),
+        (
+            [0.5, 0.5, 0.5, 1.0],
+            [0.5001, 0.5, 0.5, 0.0],
+            Some("the picture is one colour all over in 8 bits, [188, 188, 188]"),
+        ),
+        (
+            [1e-5, 0.0, 0.0, 1e-3],
+            dark,
+            Some("the picture shows nothing but the background in 8 bits"),
+        ),
+        ([3e-3, 0.0, 0.0, 1e-3], dark, None),
+    ] {
+        let color = half_of(one, other);
+        assert_eq!(says_as(color.clone(), in_eight).as_deref(), expected, "{one:?}");
+        assert_eq!(says(color), None, "all bits show {one:?}");
+    }
+    // Four stops more, and it is seen.
+    let brighter = film::Tone { exposure: 4.0, ..tone };
+    let brighter = Shown { eight_bit: Some(brighter), ..Shown::default() };
+    assert_eq!(says_as(half_of([1.4e-4, 0.0, 0.0, 1.0], dark), brighter), None);
+    // A silhouette in a transparent film is seen by its alpha.
+    let mut transparent = film(half_of([1e-6, 0.0, 0.0, 1.0], dark));
+    transparent.transparent = true;
+    let line = blank(&transparent, in_eight).expect("black, though not empty");
+    assert!(
+        line.starts_with("the picture is black all over in 8 bits: its brightest colour is 1.0e-6"),
+        "{line}"
+    );
+    assert!(line.contains("--exposure 18"), "{line}");
 }

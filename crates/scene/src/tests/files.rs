@@ -136,3 +136,47 @@ fn images_that_are_missing_are_found_by_line() {
     assert!(lines[0].contains(":1:26: background.environment: found no file at"), "{error}");
     assert!(lines[1].contains(":4:20: objects[0].material.texture: found no file at"), "{error}");
 }
+
+/// Of files of all kinds that are missing each is named once, at its line, and beside what else is wrong.
+#[test]
+fn all_files_that_are_missing_are_named_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.toml");
+    let text = "background.environment = \"env.exr\"\n[[objects]]\npoints = \"a.ply\"\nmaterial.texture = \"tex.png\"\n\
+                [[objects]]\npoints = \"b.ply\"\nvolume = { scalar = \"s\", transfer = \"tr.toml\" }\n";
+    std::fs::write(&path, text).unwrap();
+    for root in [None, Some(folder.path())] {
+        let error = Scene::load_below(&path, &[], root).unwrap_err();
+        let lines = error.lines();
+        assert_eq!(lines.len(), 5, "{lines:?}");
+        for (line, (place, name)) in lines.iter().zip([
+            (":1:", "env.exr"),
+            (":3:", "a.ply"),
+            (":4:", "tex.png"),
+            (":6:", "b.ply"),
+            (":7:", "tr.toml"),
+        ]) {
+            assert!(line.contains(place) && line.contains("found no file at '"), "{line}");
+            assert!(line.contains(name), "{line}");
+        }
+    }
+    let set = ["image.size=3".to_owned()];
+    let both = Scene::load(&path, &set).unwrap_err();
+    assert!(both.lines().len() == 2, "{:?}", both.lines());
+}
+
+/// Angles turn an environment; without one they would be passed over.
+#[test]
+fn a_background_of_one_color_is_not_turned() {
+    let of = |background: &str| {
+        Scene::from_toml(&format!("{SMALL}[background]\n{background}\n"), Path::new("s.toml"), &[])
+    };
+    let error = of("color = [0.1, 0.2, 0.3]\nrotate = [0, 0, 90]").unwrap_err().to_string();
+    assert!(
+        error.contains("background.rotate: found angles") && error.contains("environment"),
+        "{error}"
+    );
+    assert!(of("rotate = [0, 0, 90]").is_err());
+    assert!(of("color = [0.1, 0.2, 0.3]\nrotate = [0, 0, 0]").is_ok());
+    assert!(of("environment = \"sky.exr\"\nrotate = [0, 0, 90]").is_ok());
+}
