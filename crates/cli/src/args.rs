@@ -1,6 +1,7 @@
 //! What may be typed. Values are checked for their form here, for their range by the scene.
 
 use crate::errors::Failure;
+use crate::input::BOX_HINT;
 use crate::point_file::ColorBy;
 use crate::source;
 use clap::builder::{ArgPredicate, PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -20,7 +21,7 @@ pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
     /// Threads that compute at once, those of Mesa's software drivers too [default: one a core]
-    #[arg(long, value_name = "N", global = true, value_parser = parse_threads)]
+    #[arg(long, value_name = "N", global = true, value_parser = parse_threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// What stands on stderr: lines of text, or one JSON object a line
     #[arg(long, value_name = "FORMAT", global = true, value_enum, default_value_t = LogFormat::Text)]
@@ -137,17 +138,17 @@ pub struct BenchArgs {
     /// Suites, suite files, scene files or point files [default: smoke]
     #[arg(value_name = "SUITE|SCENE")]
     pub scenes: Vec<PathBuf>,
-    /// List the suites and what they measure
+    /// List the suites and what they measure, or the rows of those that are named
     #[arg(long)]
     pub list: bool,
     /// Frames to time, after one to warm up
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=100_000), allow_negative_numbers = true)]
     pub runs: u32,
     /// Beside each build, time the neighbours and fits of the same points on the CPU with a k-d tree
     #[arg(long)]
     pub cpu_preparation: bool,
     /// Leave out rows of more generated points
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub max_points: Option<u32>,
     /// Write the results as JSON
     #[arg(long, value_name = "FILE")]
@@ -224,15 +225,15 @@ pub struct CompareArgs {
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub channels: Vec<String>,
     /// Largest |a - b| that any pixel of any of these channels may have, in the channel's unit
-    #[arg(long, value_name = "X", value_parser = parse_limit)]
+    #[arg(long, value_name = "X", value_parser = parse_limit, allow_negative_numbers = true)]
     pub max_abs: Option<f64>,
     /// Largest root mean square of a - b that any of these channels may have, in the channel's unit
-    #[arg(long, value_name = "X", value_parser = parse_limit)]
+    #[arg(long, value_name = "X", value_parser = parse_limit, allow_negative_numbers = true)]
     pub rmse: Option<f64>,
     /// Compute FLIP of R, G and B of pictures of any size: HDR-FLIP, or LDR-FLIP where one is PNG or JPEG; with X, the
     /// largest mean that it may have, 0 to 1. Without this option, FLIP is computed of pictures of up to 2 megapixels
     /// (2^21 pixels), and of equal ones, where it is 0
-    #[arg(long, value_name = "X", num_args = 0..=1, value_parser = parse_flip)]
+    #[arg(long, value_name = "X", num_args = 0..=1, value_parser = parse_flip, allow_negative_numbers = true)]
     pub flip: Option<Option<f64>>,
     /// List the attributes that differ in the headers of two EXR files; one that differs is over a
     /// limit
@@ -260,13 +261,13 @@ pub struct CompareArgs {
     out, 130 interrupted."
 )]
 pub struct FillArgs {
-    /// Point file of a surface, in any format that is read
+    /// Point file of a surface, in any format that is read; - is what comes through stdin
     pub input: PathBuf,
     /// PLY file to write
     #[arg(short, long, value_name = "OUT.ply")]
     pub output: PathBuf,
     /// Points inside
-    #[arg(long, value_name = "N", default_value_t = 40_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 40_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000), allow_negative_numbers = true)]
     pub count: u32,
     /// Half the width of the widest hole that is closed, over the longest side of the points' box
     #[arg(long, value_name = "PART", default_value_t = 0.06, value_parser = parse_reach, allow_negative_numbers = true)]
@@ -358,13 +359,13 @@ pub struct ViewArgs {
 #[derive(Debug, Clone, Args)]
 pub struct Overrides {
     /// Width and height of the picture in pixels
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true)]
     pub size: Option<Size>,
     /// Override one value of the scene, e.g. objects.0.surface.trust=0.7; may be given several times
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub set: Vec<String>,
     /// Cells a ray may cross in one pass: 0 lets the device decide, 1 is the paper's loop
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub cells_per_pass: Option<u32>,
     /// Other defaults beneath what the scene says: paper renders by the paper's own method
     #[arg(long, value_name = "NAME")]
@@ -578,10 +579,7 @@ fn parse_crop(text: &str) -> Result<plan::Window, String> {
     let whole = |x: &f64| x.fract() == 0.0 && x.abs() <= FARTHEST_PIXEL;
     // Two corners, decimals or northings: a box in the coordinates of a file is meant.
     if numbers.len() == 6 || !numbers.iter().all(whole) {
-        return Err(format!(
-            "{EXPECTED}; --crop is in pixels of the picture. To render only the points in a box of the file's \
-             coordinates, use filter.box: --set 'objects.0.filter.box={{ min = [X, Y, Z], max = [X, Y, Z] }}'"
-        ));
+        return Err(format!("{EXPECTED}; --crop is in pixels of the picture. {BOX_HINT}"));
     }
     let [x, y, width, height] = numbers[..] else { return Err(EXPECTED.to_owned()) };
     if numbers.iter().any(|x| *x < 0.0) {

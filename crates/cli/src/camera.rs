@@ -6,6 +6,7 @@
 use crate::args::{UpAxis, ViewArgs};
 use crate::errors::Failure;
 use crate::progress::Progress;
+use crate::source::PIPE;
 use scene::{CameraKeys, Scene, ViewFrom, camera_keys_set};
 use std::path::{Path, PathBuf};
 
@@ -74,6 +75,11 @@ impl CameraOptions {
                     "{option} and --set {text} {why}; leave one out"
                 )));
             }
+        }
+        if args.camera_from.as_deref() == Some(Path::new(PIPE)) {
+            return Err(Failure::usage(
+                "--camera-from -: reads no picture from stdin, expected an EXR file; name one",
+            ));
         }
         let from = args.camera_from.as_deref().map(Header::read).transpose()?;
         Ok(Self { from, ..options })

@@ -56,6 +56,13 @@ pub fn leave_bar(line: &mut impl std::fmt::Write) {
     }
 }
 
+/// Clears the line that a bar is on, before a process ends that others draw it in.
+pub fn clear_bar() {
+    if BAR.load(Ordering::Relaxed) {
+        let _ = write!(io::stderr().lock(), "\r\x1b[2K");
+    }
+}
+
 /// The text with control characters other than line ends written out.
 fn printable(text: &str) -> Cow<'_, str> {
     let obeyed = |c: char| c.is_control() && c != '\n';

@@ -3,7 +3,7 @@
 use crate::args::DeviceArgs;
 use crate::errors::{self, Exit, Failure};
 use crate::progress::Progress;
-use crate::{ending, interrupt, memory};
+use crate::{again, ending, interrupt, memory};
 use film::Film;
 use gpu::{Device, DeviceChoice, GpuError, Instance, InstanceOptions};
 use kernels::layout::FitOutcome;
@@ -16,14 +16,16 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Turns the validation layer on where it is `1`; any message then ends the process with code 4.
-const VALIDATION: &str = "POINTILLIST_VALIDATION";
+pub const VALIDATION: &str = "POINTILLIST_VALIDATION";
 
 /// Why no device was opened.
 pub enum Unopened {
     /// Vulkan, or all of its devices.
     Device(GpuError),
-    /// A driver would not fit into memory.
-    Memory(Failure),
+    /// A driver would not fit into memory, as the words say.
+    Memory(String),
+    /// A driver crashed while this program opened it, and it began anew.
+    Crashed(String),
 }
 
 impl Unopened {
@@ -31,14 +33,14 @@ impl Unopened {
     pub fn in_words(&self) -> String {
         match self {
             Self::Device(error) => errors::chain(error),
-            Self::Memory(failure) => failure.lines.join("; "),
+            Self::Memory(why) | Self::Crashed(why) => why.clone(),
         }
     }
 }
 
-/// Opens a device, if the process has the memory that drivers take.
-pub fn open_device(choice: &DeviceChoice) -> Result<Arc<Device>, Unopened> {
-    memory::require_driver().map_err(Unopened::Memory)?;
+/// Opens a device, if the process has the memory that drivers take, and `beside` for the work.
+pub fn open_device(choice: &DeviceChoice, beside: u64) -> Result<Arc<Device>, Unopened> {
+    memory::require_driver(beside).map_err(Unopened::Memory)?;
     let validation = std::env::var_os(VALIDATION).is_some_and(|value| value == "1");
     ending::driver_is_there();
     Instance::new(&InstanceOptions { validation })
@@ -96,15 +98,16 @@ pub struct Frame {
     pub traversal: Traversal,
 }
 
-/// Opens the engine that was asked for, or else the default, and lets `work` use it. What the validation layer has to
+/// Opens the engine that was asked for, or else the default, and lets `work` use it, which takes about `beside` bytes. What the validation layer has to
 /// say is said when everything is destroyed.
 pub fn with_engine<T>(
     args: &DeviceArgs,
+    beside: u64,
     progress: &Progress,
     work: impl FnOnce(&Engine) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     // Not cut off: a process that ends while a driver starts its threads may crash.
-    let engine = interrupt::held(|| Engine::open(args, progress))?;
+    let engine = interrupt::held(|| Engine::open(args, beside, progress))?;
     let result = work(&engine);
     interrupt::finished();
     let Engine::Gpu(device) = engine else { return result };
@@ -122,7 +125,7 @@ pub fn with_engine<T>(
 }
 
 impl Engine {
-    fn open(args: &DeviceArgs, progress: &Progress) -> Result<Self, Failure> {
+    fn open(args: &DeviceArgs, beside: u64, progress: &Progress) -> Result<Self, Failure> {
         let choice = match args.device.as_deref().map(str::trim) {
             Some(name) if name.eq_ignore_ascii_case("reference") => return Ok(Self::Reference),
             Some(name) if name.eq_ignore_ascii_case("reference-f64") => {
@@ -130,7 +133,7 @@ impl Engine {
             }
             Some(name) if name.eq_ignore_ascii_case("vulkan") => DeviceChoice::Default,
             Some(name) => DeviceChoice::Named(name.to_owned()),
-            None => match open_device(&DeviceChoice::Default) {
+            None => match again::open_by_default(|| open_device(&DeviceChoice::Default, beside)) {
                 Ok(device) => return Ok(Self::Gpu(device)),
                 // Who checks a device by the layer wants no picture without it.
                 Err(Unopened::Device(error @ GpuError::NoValidation { .. })) => {
@@ -146,10 +149,14 @@ impl Engine {
                 }
             },
         };
-        match open_device(&choice) {
+        match open_device(&choice, beside) {
             Ok(device) => Ok(Self::Gpu(device)),
             Err(Unopened::Device(error)) => Err(Failure::no_device(&error)),
-            Err(Unopened::Memory(failure)) => Err(failure),
+            Err(Unopened::Memory(why) | Unopened::Crashed(why)) => {
+                Err(Failure::exhausted(format!(
+                    "{why}; raise the limit, or render with --device reference, which takes less"
+                )))
+            }
         }
     }
 

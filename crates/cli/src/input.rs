@@ -32,6 +32,10 @@ pub struct Input {
     point_file: Option<PointFile>,
 }
 
+/// What is meant where a crop is of the file's coordinates.
+pub const BOX_HINT: &str = "To render only the points in a box of the file's coordinates, use filter.box: \
+    --set 'objects.0.filter.box={ min = [X, Y, Z], max = [X, Y, Z] }'";
+
 /// Options of the command line that stand for values of the scene, later ones over earlier ones.
 #[derive(Debug, Default)]
 pub struct SceneValues {
@@ -127,6 +131,21 @@ impl SceneValues {
         }
         failure
     }
+}
+
+/// Fails where `--preset` and `--set` give different presets: neither is to be passed over without a word.
+pub fn check_preset(preset: Option<&str>, set: &[String]) -> Result<(), Failure> {
+    let Some(preset) = preset else { return Ok(()) };
+    for text in set {
+        let Some((path, value)) = text.split_once('=') else { continue };
+        let value = value.trim().trim_matches(['"', '\'']);
+        if path.trim() == "render.preset" && value != preset {
+            return Err(Failure::usage(format!(
+                "--preset {preset} and --set {text} give different presets; leave one out"
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Why `--columns` and this file do not go together.
@@ -341,7 +360,17 @@ impl Input {
     /// What of the picture is rendered. Fails where a crop does not lie inside the picture: before
     /// points are read.
     pub fn window(&self, crop: Option<Window>) -> Result<Window, Failure> {
-        Ok(plan::checked_crop(crop, self.scene.image.size)?)
+        let size = self.scene.image.size;
+        plan::checked_crop(crop, size).map_err(|error| {
+            let mut failure = Failure::from(error);
+            let lies_outside =
+                |crop: Window| crop.origin[0] >= size[0] || crop.origin[1] >= size[1];
+            // As whole coordinates of a file do.
+            if let (true, Some(line)) = (crop.is_some_and(lies_outside), failure.lines.last_mut()) {
+                *line = format!("{line}. {BOX_HINT}");
+            }
+            failure
+        })
     }
 
     /// Reads of every object's points what a render needs, and reports those that are of no use or left out. How a

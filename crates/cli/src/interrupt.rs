@@ -6,8 +6,9 @@
 //! never left behind.
 
 use crate::errors::{Exit, Failure};
-use crate::temporary;
+use crate::{console, temporary};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::mpsc;
 use std::time::Duration;
 
 static REQUESTED: AtomicBool = AtomicBool::new(false);
@@ -15,6 +16,16 @@ static REQUESTED: AtomicBool = AtomicBool::new(false);
 static HELD: AtomicU32 = AtomicU32::new(0);
 /// Files being written.
 static WRITING: AtomicU32 = AtomicU32::new(0);
+
+/// Whether the line that says so is written.
+static SAID: AtomicBool = AtomicBool::new(false);
+/// How long a reader of stderr that takes nothing may hold up the end.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Whether the caller is to write the line that says that the process was interrupted: once.
+pub fn is_to_be_said() -> bool {
+    !SAID.swap(true, Ordering::SeqCst)
+}
 
 /// Takes over the signals.
 pub fn install() -> Result<(), Failure> {
@@ -75,6 +86,18 @@ pub fn finished() {
 }
 
 fn end() -> ! {
+    if is_to_be_said() {
+        let (said, is_said) = mpsc::channel();
+        let says = move || {
+            console::clear_bar();
+            console::errors(&Failure::interrupted());
+            // Nobody waits for it any more where this took long.
+            let _ = said.send(());
+        };
+        if std::thread::Builder::new().spawn(says).is_ok() {
+            let _ = is_said.recv_timeout(PATIENCE);
+        }
+    }
     film::remove_unfinished();
     temporary::remove_all();
     std::process::exit(i32::from(Exit::Interrupted.code()))

@@ -109,12 +109,14 @@ fn groups(root: &Path, lines: &str) -> Vec<Room> {
         } else {
             continue;
         };
-        for mount in mounts {
+        // Where memory is the only controller, the second is the first.
+        let second = if mounts[0] == mounts[1] { 1 } else { 2 };
+        for mount in &mounts[..second] {
             // In a container the path may be the host's, and the group itself is what is mounted.
             let mut folder: PathBuf = mount.join(path.trim_start_matches('/'));
             loop {
                 rooms.extend(of_group(&folder, [max, current], cached));
-                if folder == mount || !folder.pop() {
+                if folder == *mount || !folder.pop() {
                     break;
                 }
             }

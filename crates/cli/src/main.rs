@@ -5,6 +5,7 @@
 //! stdout or stderr, but for the bars of [`progress`].
 #![forbid(unsafe_code)]
 
+mod again;
 mod ahead;
 mod args;
 mod bench;
@@ -44,7 +45,9 @@ fn main() -> ExitCode {
     let exit = match finished {
         Ok(Ok(exit)) => exit,
         Ok(Err(failure)) => {
-            console::errors(&failure);
+            if failure.exit != Exit::Interrupted || interrupt::is_to_be_said() {
+                console::errors(&failure);
+            }
             failure.exit
         }
         // The hook has said what happened.

@@ -28,16 +28,26 @@ const DRIVER_THREAD_ADDRESSES: u64 = 20 * MIB;
 const DRIVER_DATA: u64 = 150 * MIB;
 const DRIVER_THREAD_DATA: u64 = 4 * MIB;
 const DRIVER_MEMORY: u64 = 160 * MIB;
+/// Address space that a point takes beside the driver, at the most: while noise is smoothed, 240 were measured.
+const POINT_BESIDE: u64 = 320;
+/// Bytes that a point has in files of these extensions, at the least; of any other, [`BYTES_OF_POINT`].
+const BYTES_OF_POINT_IN: [(&[&str], u64); 3] = [
+    (&["laz", "gz", "npz", "e57"], 4),
+    (&["xyz", "txt", "asc", "csv", "tsv", "dat", "pts", "ptx", "obj", "off"], 20),
+    (&["las"], 20),
+];
+const BYTES_OF_POINT: u64 = 12;
 /// Mesa starts no more.
 const MOST_DRIVER_THREADS: usize = 32;
 
-/// Fails where a picture of this window with so many further channels does not fit, and says of a large one what it takes.
+/// Bytes of a picture of this window with so many further channels. Fails where it does not fit, and says of a large one
+/// what it takes.
 pub fn require_picture(
     window: Window,
     outputs: &[FileFormat],
     added: usize,
     progress: &Progress,
-) -> Result<(), Failure> {
+) -> Result<u64, Failure> {
     let film = FILM_PIXEL + size_of::<f32>() as u64 * added as u64;
     let copies = if outputs.contains(&FileFormat::Exr) { 2 } else { 1 };
     let [width, height] = window.size;
@@ -45,7 +55,18 @@ pub fn require_picture(
     let what = format!("a picture of {width}x{height} pixels");
     require(bytes, &what, "render it in parts with --crop, or raise the limit")?;
     forecast(bytes, &what, progress);
-    Ok(())
+    Ok(bytes)
+}
+
+/// What the points of some files take beside a driver, about, by the sizes of the files.
+pub fn of_point_files<'a>(files: impl Iterator<Item = &'a Path>) -> u64 {
+    let of_file = |file: &Path| {
+        let size = std::fs::metadata(file).map_or(0, |found| found.len());
+        let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let known = BYTES_OF_POINT_IN.iter().find(|(all, _)| all.contains(&extension.as_str()));
+        (size / known.map_or(BYTES_OF_POINT, |known| known.1)).saturating_mul(POINT_BESIDE)
+    };
+    files.map(of_file).fold(0, u64::saturating_add)
 }
 
 /// Fails where the surfaces of this many points do not fit, and says of many what they take.
@@ -87,25 +108,33 @@ pub fn require_pictures(paths: &[&Path]) -> Result<(), Failure> {
     require(bytes, &names.join(" with "), "use a machine with more memory, or crop the pictures")
 }
 
-/// Fails where a Vulkan driver does not fit, of which some crash where memory runs out.
+/// Says why a Vulkan driver does not fit, of which some crash where memory runs out. `beside` is what the work takes, about:
+/// a limit that the user has set has to hold both, so that the CPU does what it has the room for. What the machine
+/// and its groups have is not divided by a guess.
 ///
 /// Measured with lavapipe (Mesa 22.3, LLVM 15) in a render of 64x48 pixels on two cores, with one heap for all threads,
 /// as processes with a limit have it: 356 MiB of address space, 16 MiB of which for each thread of the driver; 135 MiB
 /// in memory; 134 MiB of data.
-pub fn require_driver() -> Result<(), Failure> {
+pub fn require_driver(beside: u64) -> Result<(), String> {
     let threads = threads::count().min(MOST_DRIVER_THREADS) as u64;
     for room in limits::rooms() {
         let needed = match room.limit {
-            Limit::AddressSpace => DRIVER_ADDRESSES + threads * DRIVER_THREAD_ADDRESSES,
-            Limit::Data => DRIVER_DATA + threads * DRIVER_THREAD_DATA,
+            Limit::AddressSpace => {
+                (DRIVER_ADDRESSES + threads * DRIVER_THREAD_ADDRESSES).saturating_add(beside)
+            }
+            Limit::Data => (DRIVER_DATA + threads * DRIVER_THREAD_DATA).saturating_add(beside),
             Limit::Machine | Limit::Group => DRIVER_MEMORY,
         };
         if needed > room.free {
-            return Err(Failure::exhausted(format!(
-                "a Vulkan driver needs about {needed} bytes, but {} bytes {} are free; raise the limit, or render with \
-                 --device reference, which takes less",
+            let work = if needed > DRIVER_MEMORY && beside > 0 {
+                " with the points and the picture"
+            } else {
+                ""
+            };
+            return Err(format!(
+                "a Vulkan driver{work} needs about {needed} bytes, but {} bytes {} are free",
                 room.free, room.limit
-            )));
+            ));
         }
     }
     Ok(())

@@ -74,6 +74,11 @@ pub fn scene_text(path: &Path) -> Option<&'static str> {
     SCENE.get().filter(|_| path == Path::new(SCENE_NAME)).map(String::as_str)
 }
 
+/// Whether anything came through stdin, which is read once.
+pub fn is_stdin_read() -> bool {
+    SCENE.get().is_some() || FOLDER.get().is_some()
+}
+
 /// A message without the folder of the temporary file.
 pub fn without_folder(message: String) -> String {
     match FOLDER.get() {

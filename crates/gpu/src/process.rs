@@ -7,9 +7,10 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
+use std::ffi::{CString, OsString, c_char};
 use std::fmt;
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicPtr, Ordering};
 
 /// Why the process ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,6 +128,13 @@ fn end(ending: Ending) {
         platform::wait();
         platform::exit(order.code);
     }
+    if matches!(ending, Ending::Crash(_)) {
+        // SAFETY: it is null, or of a box that is never freed.
+        if let Some(again) = unsafe { AGAIN.load(Ordering::SeqCst).as_ref() } {
+            (order.clean)();
+            platform::begin_anew(again);
+        }
+    }
     let mut line = Line::new();
     (order.word)(ending, &mut line);
     let _ = fmt::Write::write_str(&mut line, "\n");
@@ -144,6 +152,64 @@ pub fn end_in_order(order: Order) {
     if ORDER.set(order).is_ok() {
         platform::take_over_crashes();
     }
+}
+
+/// A program in place of one that crashes.
+#[derive(Debug)]
+pub struct Again {
+    program: CString,
+    arguments: Texts,
+    environment: Texts,
+}
+
+/// Texts as the system takes them.
+#[derive(Debug)]
+struct Texts {
+    _held: Vec<CString>,
+    /// Where each begins, and null at the end.
+    list: Vec<*const c_char>,
+}
+
+impl FromIterator<CString> for Texts {
+    fn from_iter<I: IntoIterator<Item = CString>>(texts: I) -> Self {
+        let held: Vec<CString> = texts.into_iter().collect();
+        let ends = [std::ptr::null()];
+        Self { list: held.iter().map(|text| text.as_ptr()).chain(ends).collect(), _held: held }
+    }
+}
+
+static AGAIN: AtomicPtr<Again> = AtomicPtr::new(std::ptr::null_mut());
+
+impl Again {
+    /// The same program with the same arguments, and one more variable in its environment. `None` where the system does
+    /// not say which program it is.
+    #[must_use]
+    pub fn with(name: &str, value: &str) -> Option<Self> {
+        let text = |text: OsString| CString::new(text.into_encoded_bytes()).ok();
+        let entry = |(name, value): (OsString, OsString)| {
+            let mut entry = name;
+            entry.push("=");
+            entry.push(value);
+            text(entry)
+        };
+        let others = std::env::vars_os().filter(|(known, _)| known != name);
+        let added = (OsString::from(name), OsString::from(value));
+        Some(Self {
+            program: text(std::env::current_exe().ok()?.into_os_string())?,
+            arguments: std::env::args_os().map(text).collect::<Option<_>>()?,
+            environment: others.chain([added]).map(entry).collect::<Option<_>>()?,
+        })
+    }
+}
+
+/// Runs `work`. Where the process crashes meanwhile, the program is begun anew in its place, after what is half done was
+/// removed ([`Order::clean`]); where the system cannot do that, the process ends in order as it would.
+pub fn guarded<T>(again: Again, work: impl FnOnce() -> T) -> T {
+    // Never freed: a thread that crashes may be about to read it.
+    AGAIN.store(Box::into_raw(Box::new(again)), Ordering::SeqCst);
+    let result = work();
+    AGAIN.store(std::ptr::null_mut(), Ordering::SeqCst);
+    result
 }
 
 /// Tells the allocator of the C library to share one heap among all threads, instead of reserving 64 MiB of address
@@ -167,7 +233,7 @@ pub fn set_driver_threads(count: usize) -> bool {
 
 #[cfg(unix)]
 mod platform {
-    use super::{Ending, ORDER, end};
+    use super::{Again, Ending, ORDER, end};
     use std::sync::atomic::{AtomicBool, Ordering};
 
     const CRASHES: [libc::c_int; 4] = [libc::SIGSEGV, libc::SIGBUS, libc::SIGILL, libc::SIGABRT];
@@ -224,6 +290,19 @@ mod platform {
         unsafe { libc::_exit(code) }
     }
 
+    /// Does not return where the system does it. Allocates nothing, and needs little of the stack.
+    pub fn begin_anew(again: &Again) {
+        let Again { program, arguments, environment } = again;
+        // SAFETY: the set is plain data; both lists end with null, and their texts live as long as `again`. Threads of
+        // drivers block signals, which the new program would inherit.
+        unsafe {
+            let mut none: libc::sigset_t = std::mem::zeroed();
+            libc::sigemptyset(&raw mut none);
+            libc::pthread_sigmask(libc::SIG_SETMASK, &raw const none, std::ptr::null_mut());
+            libc::execve(program.as_ptr(), arguments.list.as_ptr(), environment.list.as_ptr());
+        }
+    }
+
     pub fn share_one_heap() {
         #[cfg(all(target_os = "linux", target_env = "gnu"))]
         // SAFETY: sets a number in the allocator, under its own lock.
@@ -238,6 +317,8 @@ mod platform {
     use std::io::Write;
 
     pub fn take_over_crashes() {}
+
+    pub fn begin_anew(_: &super::Again) {}
 
     pub fn wait() {}
 

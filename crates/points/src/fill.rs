@@ -4,7 +4,10 @@
 
 mod solid;
 
+use crate::dimension::Dimension;
 use crate::ply::PlyPoints;
+use crate::set::PointSet;
+use crate::strays::{Strays, rough_origin};
 use crate::watch::Watch;
 use rayon::prelude::*;
 use solid::Solid;
@@ -31,7 +34,7 @@ pub enum NotFilled {
 
 /// Points of a surface, and `count` inside it, with `boundary` (1 on the surface, 0 inside), `depth` (0 on the surface,
 /// 1 at the deepest point) and `density` (whirls, 0 to 1). `reach` is half the width of holes that are closed, over the
-/// longest side of the points' box.
+/// longest side of the box around the points but for strays, which decide nothing.
 ///
 /// # Errors
 /// Where nothing is inside, or the watcher asked for an end.
@@ -49,8 +52,24 @@ pub fn filled(
     if !(longest > 0.0 && longest.is_finite()) {
         return Err(NotFilled::NoInside);
     }
-    watch.stage("looking for the inside", 0);
-    let solid = Solid::new(surface, reach * longest);
+    watch.stage("looking for the inside", surface.len() as u64);
+    let strays = rough_origin(&[surface])
+        .and_then(|origin| Strays::find_watched(surface, origin, watch, 0))
+        .ok_or(NotFilled::Interrupted)?;
+    // One stray point would make cells of the others too few for any inside.
+    let positions = without(surface, &strays.places);
+    let file_index = (0..positions.len() as u32).collect();
+    let bulk = PointSet { positions, file_index, ..PointSet::default() };
+    let [least, most] = strays.bulk;
+    let longest = (0..3).map(|axis| most[axis] - least[axis]).fold(0.0, f64::max);
+    if longest <= 0.0 {
+        return Err(NotFilled::NoInside);
+    }
+    let solid = Solid::new(&bulk.positions, reach * longest);
+    let fills_space = || Dimension::of(&bulk).is_volume();
+    if !solid.has_inside() || !(solid.encloses() || fills_space()) {
+        return Err(NotFilled::NoInside);
+    }
     let inside = drawn(&solid, count, watch)?;
     let deepest = inside.iter().map(|&(_, depth)| depth).fold(0.0, f64::max);
     let depths =
@@ -62,11 +81,17 @@ pub fn filled(
     let density = rounded(positions.iter().map(|p| 0.5 + 0.5 * whirls(place(p))));
     let boundary = (0..positions.len()).map(|i| f64::from(u8::from(i < surface.len())));
     let boundary = rounded(boundary);
-    let farthest =
-        [solid.low, solid.high].as_flattened().iter().fold(0.0, |far, x| x.abs().max(far));
+    let farthest = surface.as_flattened().iter().fold(0.0, |far: f64, x| x.abs().max(far));
     let double = farthest * f64::from(f32::EPSILON) > RESOLVED * longest;
     let attributes = vec![("boundary", boundary), ("depth", depths), ("density", density)];
     Ok(PlyPoints { positions, attributes, double, ..PlyPoints::default() })
+}
+
+/// The points but those at some places, which ascend.
+fn without(points: &[Vector], places: &[u32]) -> Vec<Vector> {
+    let mut left_out = places.iter().peekable();
+    let kept = (0u32..).zip(points).filter(|(at, _)| left_out.next_if_eq(&at).is_none());
+    kept.map(|(_, &p)| p).collect()
 }
 
 /// The first `count` places of the box that are inside, with their depths.
@@ -182,9 +207,42 @@ mod tests {
         assert_eq!(set.unwrap().positions, filled.positions);
     }
 
+    /// One return of the sky, or a row of zeros: the same points inside as without.
+    #[test]
+    fn a_stray_point_changes_nothing_inside() {
+        let surface = sphere([0.0; 3], 2.0);
+        let inside = filled(&surface, 500, 0.06, &Unwatched).unwrap();
+        for stray in [[1e4, 2e4, 3e4], [-650_000.0, -4_900_000.0, 0.0], [0.0, 30.0, 0.0]] {
+            let mut with = surface.clone();
+            with.insert(77, stray);
+            let found = filled(&with, 500, 0.06, &Unwatched).unwrap();
+            assert_eq!(found.positions[5001..], inside.positions[5000..], "{stray:?}");
+            assert_eq!(found.positions[77], stray);
+        }
+    }
+
+    /// Points of a square, at heights.
+    fn sheet(height: impl Fn(f64, f64, u32) -> f64) -> Vec<Vector> {
+        let place = |i: u32| [i % 50, i / 50].map(|x| f64::from(x) / 24.5 - 1.0);
+        (0..2500).map(|i| (place(i), i)).map(|([x, z], i)| [x, height(x, z, i), z]).collect()
+    }
+
     #[test]
     fn what_encloses_nothing_is_not_filled() {
-        for surface in [vec![[1.0; 3]], Vec::new(), vec![[0.0; 3], [f64::INFINITY; 3]]] {
+        let ball = sphere([0.0; 3], 1.0);
+        let half = || ball.iter().filter(|p| p[1] < 0.0).copied();
+        for surface in [
+            sheet(|_, _, _| 0.0),
+            sheet(|x, _, _| 0.1 * (3.0 * x).sin()),
+            sheet(|x, z, _| 0.2 * (9.0 * x).sin() * (9.0 * z).sin()),
+            sheet(|_, _, i| 0.05 * random(i.into(), 1.0)),
+            half().collect(),
+            vec![[0.0; 3], [1.0, 0.0, 0.0]],
+            vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            vec![[1.0; 3]],
+            Vec::new(),
+            vec![[0.0; 3], [f64::INFINITY; 3]],
+        ] {
             let found = filled(&surface, 10, 0.06, &Unwatched);
             assert!(found == Err(NotFilled::NoInside), "{} points", surface.len());
         }

@@ -1,7 +1,7 @@
 //! Models that suites fill, kept in a cache folder from run to run.
 //!
 //! A file's name has a hash of the model's bytes and of how it is filled, so that another model, or another version of
-//! what fills, has a file of its own. Where the cache cannot be written to, a temporary folder holds them for one run.
+//! what fills, has a file of its own, and a hash of what is in it, so that a damaged one is known and made anew. Where the cache cannot be written to, a temporary folder holds them for one run.
 
 use crate::commands::fill;
 use crate::errors::{Exit, Failure};
@@ -39,16 +39,17 @@ impl Filled {
         let mut hash = Sha256::new();
         hash.update(format!("fill {VERSION} {COUNT} {REACH} {}\n", env!("CARGO_PKG_VERSION")));
         hash.update(bytes);
-        let hash: String =
-            hash.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect();
-        let name = format!("{stem}-filled-{hash}.ply");
+        let hash = hexadecimal(&hash.finalize());
+        let prefix = format!("{stem}-filled-{hash}-");
         if let Some(cache) = folder()
-            && cache.join(&name).is_file()
+            && let Some(path) = whole(&cache, &prefix, progress)
         {
-            return Ok(cache.join(name));
+            return Ok(path);
         }
         let set = crate::input::read_file(model, &ReadOptions::default(), progress)?;
         let points = fill::filled(model, &set.positions, COUNT, REACH, progress)?;
+        let points = fill::encoded(&points);
+        let name = format!("{prefix}{}.ply", short_hash(&points));
         if let Some(cache) = folder() {
             let path = cache.join(&name);
             let written = match fs::create_dir_all(&cache) {
@@ -93,6 +94,34 @@ impl Filled {
         write(&path)?;
         Ok(path)
     }
+}
+
+/// The file of the cache that begins so and holds what its name says. Others are removed.
+fn whole(cache: &Path, prefix: &str, progress: &Progress) -> Option<PathBuf> {
+    for entry in fs::read_dir(cache).ok()?.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let of_contents = name.strip_prefix(prefix).and_then(|rest| rest.strip_suffix(".ply"));
+        let Some(of_contents) = of_contents else { continue };
+        let path = entry.path();
+        if fs::read(&path).is_ok_and(|bytes| short_hash(&bytes) == of_contents) {
+            return Some(path);
+        }
+        progress.note(&format!(
+            "{}: damaged, since its contents are not those of its name; it is made anew",
+            path.display()
+        ));
+        // Where it cannot be removed, it is written over.
+        let _ = fs::remove_file(&path);
+    }
+    None
+}
+
+fn short_hash(bytes: &[u8]) -> String {
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+fn hexadecimal(hash: &[u8]) -> String {
+    hash.iter().take(16).map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The cache folder: `pointillist` in what XDG_CACHE_HOME names, else in ~/.cache; on Windows in LOCALAPPDATA.

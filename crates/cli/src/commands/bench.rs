@@ -5,23 +5,32 @@ use crate::bench::cases::{Case, Cases};
 use crate::bench::changes::Earlier;
 use crate::bench::measure::measure;
 use crate::bench::report::{Report, Skipped};
-use crate::bench::suites::{self, Suites};
+use crate::bench::suites::{self, Asked, Suites};
 use crate::bench::{plot, table};
 use crate::engine::{Engine, with_engine};
 use crate::errors::{Exit, Failure};
+use crate::input::check_preset;
 use crate::progress::Progress;
+use crate::source::PIPE;
 use crate::stats::{Beside, PreparedOver, Row};
 use crate::{console, files, interrupt};
 use film::Film;
 use serde_json::json;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Times all that was asked for. Whatever can be checked is checked before.
 pub fn run(args: &BenchArgs) -> Result<Exit, Failure> {
     if args.list {
-        return console::result(&list()).map(|()| Exit::Done);
+        let text = if args.scenes.is_empty() { list() } else { list_rows(&args.scenes)? };
+        return console::result(&text).map(|()| Exit::Done);
     }
+    if args.scenes.iter().any(|scene| scene == Path::new(PIPE)) {
+        return Err(Failure::usage(
+            "-: bench reads nothing from stdin, since it renders each row several times; name a file",
+        ));
+    }
+    check_preset(args.overrides.preset.as_deref(), &args.overrides.set)?;
     let outputs: Vec<&Path> = args
         .json
         .iter()
@@ -42,7 +51,7 @@ pub fn run(args: &BenchArgs) -> Result<Exit, Failure> {
     inputs.extend(cases.suites.iter().chain(&args.compare).map(|path| path.as_path()));
     files::check_distinct(&outputs, &inputs)?;
 
-    let mut report = with_engine(&args.device, &progress, |engine| {
+    let mut report = with_engine(&args.device, 0, &progress, |engine| {
         let mut report = Report::new(engine, args.runs);
         // Held, so that what was measured is shown before an interruption ends the process.
         let timed = interrupt::held(|| time_all(args, &cases, engine, &mut report, &progress));
@@ -146,6 +155,37 @@ fn write(args: &BenchArgs, report: &Report) -> Result<(), Failure> {
         files::keep(path, &plot::svg(report)?)?;
     }
     Ok(())
+}
+
+/// The rows of suites, each with its scene.
+fn list_rows(asked: &[PathBuf]) -> Result<String, Failure> {
+    let mut suites = Suites::default();
+    let mut text = String::new();
+    for asked in asked {
+        let Asked::Suite(name, suite) = suites.find(asked)? else {
+            return Err(Failure::usage(format!(
+                "{}: --list lists the rows of suites, but this is a scene or a point file; name a suite",
+                asked.display()
+            )));
+        };
+        // Writing to a string cannot fail; nor below.
+        let _ = writeln!(text, "{name}: {}", suite.about);
+        let width = suite.rows.iter().map(|row| row.name.chars().count()).max().unwrap_or(0);
+        for row in &suite.rows {
+            let scene = suites.as_written(&row.scene.display().to_string());
+            let _ = write!(text, "  {:<width$}  {scene}", row.name);
+            for (what, numbers) in
+                [("points", &row.point_counts), ("cells a pass", &row.cells_per_pass)]
+            {
+                let numbers: Vec<String> = numbers.iter().map(u32::to_string).collect();
+                if !numbers.is_empty() {
+                    let _ = write!(text, "; {what}: {}", numbers.join(", "));
+                }
+            }
+            text.push('\n');
+        }
+    }
+    Ok(text)
 }
 
 fn list() -> String {

@@ -3,13 +3,14 @@
 use crate::args::CheckArgs;
 use crate::console;
 use crate::errors::Failure;
-use crate::input::{Input, SceneValues};
+use crate::input::{Input, SceneValues, check_preset};
 use crate::progress::Progress;
 use serde_json::json;
 
 /// Loads the scene, reads its points and plans its render: what passes here does not fail there
 /// for the scene's sake.
 pub fn run(args: &CheckArgs) -> Result<(), Failure> {
+    check_preset(args.preset.as_deref(), &args.set)?;
     let mut values = SceneValues::set(&args.set).below(args.root.as_deref());
     values.add_preset(args.preset.as_deref());
     let mut input = Input::load(&args.scene, &values, &args.view)?;

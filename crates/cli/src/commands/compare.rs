@@ -3,9 +3,11 @@
 use crate::args::CompareArgs;
 use crate::commands::compare_report::{Measured, Report, SeenFlip};
 use crate::errors::{Exit, Failure};
+use crate::log::{self, Level};
 use crate::{console, files, interrupt, memory};
 use compare::{AttributeDifference, FalseColor, Measures, Pair, Picture, Rect, Tally};
 use film::FileFormat;
+use serde_json::json;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -72,8 +74,21 @@ pub fn run(args: &CompareArgs) -> Result<Exit, Failure> {
         write_diff(diff, args, &pair, &channels, report.flip.as_ref())
             .map_err(not_comparable)??;
     }
+    let exit = if report.over.is_empty() { Exit::Done } else { Exit::Difference };
+    if log::is_json() {
+        let found = match report.over.len() {
+            0 => "within the limits, or none given".to_owned(),
+            count => format!("over {count} of the limits"),
+        };
+        let fields = json!({
+            "outputs": args.diffs.iter().map(|diff| diff.display().to_string()).collect::<Vec<_>>(),
+            "over": report.over,
+            "exit": exit.code(),
+        });
+        console::say(Level::Info, "result", &format!("{name_a} and {name_b}: {found}"), fields);
+    }
     console::result(&if args.json { report.json(args) } else { report.text(args) })?;
-    Ok(if report.over.is_empty() { Exit::Done } else { Exit::Difference })
+    Ok(exit)
 }
 
 /// Whatever can be known of the outputs before the pictures are read.
@@ -175,7 +190,8 @@ fn over(args: &CompareArgs, report: &Report) -> Vec<String> {
         let Measures { max_abs, rmse, nan, .. } = measures;
         let place = format!("first at {},{}", measures.worst.x, measures.worst.y);
         if limited && *nan > 0 {
-            over.push(format!("{name}: {nan} pixels are NaN in one file alone, {place}"));
+            let are = if *nan == 1 { "pixel is" } else { "pixels are" };
+            over.push(format!("{name}: {nan} {are} NaN in only one of the files, {place}"));
         }
         let limits = [
             ("largest difference", max_abs, args.max_abs, "--max-abs"),
@@ -220,7 +236,7 @@ fn write_diff(
             let FalseColor { pixels, scale } = FalseColor::of(pair, shown, region, args.max_abs);
             console::note(&format!(
                 "{}: the largest difference of {}: black is 0, pale yellow {scale} and more, cyan \
-                 infinite or NaN in one file alone",
+                 infinite or NaN in only one of the files",
                 path.display(),
                 shown.join(", ")
             ));

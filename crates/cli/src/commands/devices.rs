@@ -1,7 +1,7 @@
 //! `devices`: what there is to render on.
 
 use crate::errors::{self, Failure};
-use crate::{console, ending, memory};
+use crate::{again, console, ending, memory};
 use gpu::{DefaultDevice, DeviceInfo, GpuError, Instance, InstanceOptions};
 use std::fmt::Write;
 
@@ -11,9 +11,12 @@ const REFERENCE: &str =
 /// Lists the devices, and says what renders where none is named: where none can be used, the CPU reference.
 pub fn run() -> Result<(), Failure> {
     let mut text = String::new();
-    let default = match memory::require_driver() {
-        Err(lacking) => Err(lacking.lines.join("; ")),
-        Ok(()) => listed(&mut text).map_err(|error| errors::chain(&error)),
+    let default = match (again::crash(), memory::require_driver(0)) {
+        (Some(crash), _) => Err(crash),
+        (None, Err(lacking)) => Err(lacking),
+        (None, Ok(())) => {
+            again::guarding(|| listed(&mut text)).map_err(|error| errors::chain(&error))
+        }
     };
     // An error of the list has them already.
     if !text.is_empty() {

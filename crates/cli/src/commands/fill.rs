@@ -4,6 +4,7 @@ use crate::args::FillArgs;
 use crate::errors::Failure;
 use crate::input;
 use crate::progress::Progress;
+use crate::source::PIPE;
 use crate::{files, interrupt, memory};
 use points::fill::NotFilled;
 use points::{PlyPoints, ReadOptions};
@@ -12,6 +13,17 @@ use std::path::Path;
 
 /// Fills, and writes the file.
 pub fn run(args: &FillArgs) -> Result<(), Failure> {
+    if args.output == Path::new(PIPE) {
+        return Err(Failure::usage(
+            "-: fill writes a file, not to stdout; name one that ends in .ply",
+        ));
+    }
+    if input::is_scene_file(&args.input) {
+        return Err(Failure::usage(format!(
+            "{}: found a scene, expected a point file of a surface; name the file that it shows",
+            args.input.display()
+        )));
+    }
     let is_ply = args.output.extension().is_some_and(|it| it.eq_ignore_ascii_case("ply"));
     if !is_ply {
         return Err(Failure::usage(format!(
@@ -28,7 +40,7 @@ pub fn run(args: &FillArgs) -> Result<(), Failure> {
     let surface = set.len();
     let filled = filled(&args.input, &set.positions, args.count, args.reach, &progress)?;
     drop(set);
-    write(&args.output, &filled)?;
+    write(&args.output, &encoded(&filled))?;
     progress.result(
         &format!(
             "{}: {surface} points, and {} inside -> {}",
@@ -64,8 +76,12 @@ pub fn filled(
     filled
 }
 
+/// The bytes of the file.
+pub fn encoded(filled: &PlyPoints) -> Vec<u8> {
+    points::encode_ply("pointillist fill", filled)
+}
+
 /// Writes the file, whole or not at all.
-pub fn write(path: &Path, filled: &PlyPoints) -> Result<(), Failure> {
-    let bytes = points::encode_ply("pointillist fill", filled);
-    interrupt::writing(|| Ok(film::store(path, &bytes)?))
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    interrupt::writing(|| Ok(film::store(path, bytes)?))
 }

@@ -32,7 +32,10 @@ pub fn run(arguments: &mut Arguments) -> Result<Exit, Failure> {
             check::run(args)?;
         }
         Command::Schema(args) => console::result(&format!("{:#}\n", schema(args)))?,
-        Command::Fill(args) => fill::run(args)?,
+        Command::Fill(args) => {
+            args.input = source::resolve(&args.input, None, None)?;
+            fill::run(args)?;
+        }
         Command::Devices => devices::run()?,
         Command::Compare(args) => return compare::run(args),
     }

@@ -4,7 +4,7 @@ use crate::ahead::Ahead;
 use crate::args::{Channels, RenderArgs};
 use crate::engine::{Built, Engine, Frame, with_engine};
 use crate::errors::Failure;
-use crate::input::{Input, SceneValues};
+use crate::input::{Input, SceneValues, check_preset};
 use crate::progress::Progress;
 use crate::source::PIPE;
 use crate::stats::{Measured, Row};
@@ -39,6 +39,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if let Some(path) = &args.legend {
         legend::check(path)?;
     }
+    check_preset(args.overrides.preset.as_deref(), &args.overrides.set)?;
     let mut values = SceneValues::new(&args.overrides);
     if let Some(samples) = args.samples {
         values.add("image.samples", &samples.to_string(), &format!("--samples {samples}"));
@@ -50,7 +51,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         Input::load(&args.scene, &values, &args.view)?.colored_by(args.color.clone())?;
     let added = Added::of(args, &formats);
     let progress = Progress::new(&args.progress);
-    memory::require_picture(input.window(args.crop)?, &formats, added.planes(), &progress)?;
+    let picture =
+        memory::require_picture(input.window(args.crop)?, &formats, added.planes(), &progress)?;
     files::check_distinct(&outputs, &input.files())?;
     if added.planes() == 0 && !args.channels.is_empty() {
         progress.warn(
@@ -67,7 +69,9 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if args.half && !formats.contains(&FileFormat::Exr) {
         progress.warn("--half is ignored, since it is for EXR files; add -o FILE.exr");
     }
-    with_engine(&args.device, &progress, |engine| {
+    let objects = input.scene.objects.iter().map(|object| object.points.as_path());
+    let beside = memory::of_point_files(objects).saturating_add(picture);
+    with_engine(&args.device, beside, &progress, |engine| {
         render(args, &mut input, added, engine, &progress)
     })
 }

@@ -73,6 +73,18 @@ fn a_model_is_filled_once_and_kept_where_it_can_be() {
     let ran = filled(&folder, &cache);
     assert!(!ran.stderr.contains("filled"), "made once: {}", ran.stderr);
 
+    // A file that was cut off, as by a full disk, or changed is made anew.
+    let file = cache.join("pointillist").join(&names()[0]);
+    let whole = std::fs::read(&file).expect("the filled model");
+    let mut changed = whole.clone();
+    changed[whole.len() / 2] ^= 1;
+    for damaged in [&whole[..whole.len() / 2], &changed, &[]] {
+        std::fs::write(&file, damaged).expect("the cache can be written to");
+        let ran = filled(&folder, &cache);
+        assert!(ran.stderr.contains("damaged"), "{}", ran.stderr);
+        assert!(std::fs::read(&file).expect("the filled model") == whole);
+    }
+
     // Another model is another file.
     folder.write("ball.ply", &sphere(801));
     filled(&folder, &cache);

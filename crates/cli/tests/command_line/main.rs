@@ -5,6 +5,7 @@
 
 mod bench;
 mod bench_preset;
+mod broken;
 mod camera;
 mod columns;
 mod compare;
@@ -33,6 +34,7 @@ mod root;
 mod signals;
 mod threads;
 mod twins;
+mod typed;
 mod usage;
 mod volumes;
 

@@ -9,6 +9,9 @@ use crate::fill::Vector;
 /// Cells along the longest side of the box.
 const CELLS: f64 = 144.0;
 const FAR: f64 = 1e20;
+/// How deep what is enclosed has to be: so many times the radius of the walls that enclose it, and so many cells.
+/// Between points that only lie side by side, or scattered in space, there is nothing as deep.
+const DEEP: [f64; 2] = [2.0, 3.0];
 
 /// Cells of a box, each with a number.
 #[derive(Debug, Clone)]
@@ -118,6 +121,8 @@ pub struct Solid {
     pub high: Vector,
     inside: Vec<bool>,
     to_points: Lattice,
+    /// In cells.
+    reach: f64,
 }
 
 impl Solid {
@@ -150,7 +155,35 @@ impl Solid {
         let mut to_outside = to_points.marked(|cell| outside[cell]);
         to_outside.spread();
         let inside = to_outside.values.iter().map(|&value| value > square).collect();
-        Self { low, high, inside, to_points }
+        Self { low, high, inside, to_points, reach: reach / edge }
+    }
+
+    /// Whether the surface has an inside: with walls of some radius up to the reach around its points, there is a deep
+    /// place that cannot be reached from outside. A sheet has none, however it is bent.
+    #[must_use]
+    pub fn encloses(&self) -> bool {
+        let mut radius = self.reach;
+        while radius >= 1.0 {
+            let wall = radius.powi(2);
+            let reached = self.to_points.reached(|cell| self.to_points.values[cell] > wall);
+            let [walls, cells] = DEEP;
+            let deep = (walls * radius).max(cells).powi(2);
+            let mut cells = reached.iter().zip(&self.to_points.values);
+            if cells.any(|(&reached, &value)| !reached && value >= deep) {
+                return true;
+            }
+            radius *= std::f64::consts::FRAC_1_SQRT_2;
+        }
+        false
+    }
+
+    /// Whether any cell is inside and not one of a point.
+    #[must_use]
+    pub fn has_inside(&self) -> bool {
+        self.inside
+            .iter()
+            .zip(&self.to_points.values)
+            .any(|(&inside, &value)| inside && value > 0.0)
     }
 
     /// The distance to the nearest point, to a cell, where p is inside and that is not 0.
@@ -180,6 +213,22 @@ mod tests {
             [radius * cos, y, radius * sin]
         };
         (0..count).map(point).collect()
+    }
+
+    /// Thin and closed has an inside; thin and open has none.
+    #[test]
+    fn a_box_is_closed_by_its_sides() {
+        let even = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n);
+        let mut points: Vec<Vector> = Vec::new();
+        for (i, j) in (0..6400).map(|k| (k % 80, k / 80)) {
+            points.extend([0.0, 0.2].map(|y| [even(i, 80), y, even(j, 80)]));
+        }
+        assert!(!Solid::new(&points, 0.06).encloses(), "two sheets");
+        for (i, j) in (0..1280).map(|k| (k % 80, k / 80)) {
+            let (a, b) = (even(i, 80), 0.2 * even(j, 16));
+            points.extend([[0.0, b, a], [1.0, b, a], [a, b, 0.0], [a, b, 1.0]]);
+        }
+        assert!(Solid::new(&points, 0.06).encloses(), "a box");
     }
 
     /// A ball with a hole of 0.3: inside is inside, to two cells, and the depth is the distance to the sphere.
