@@ -563,7 +563,7 @@ fn parse_limit(text: &str) -> Result<f64, String> {
 
 fn parse_flip(text: &str) -> Result<f64, String> {
     parse_limit(text).map_err(|error| {
-        format!("{error}; without a limit, --flip stands behind the names of both pictures")
+        format!("{error}; without a limit, --flip goes after the names of both pictures")
     })
 }
 

@@ -139,7 +139,7 @@ fn end_label(value: f64, [low, high]: [f64; 2]) -> String {
     let size = low.abs().max(high.abs());
     // Four digits of the range, or of the value where that is little of it.
     let step = 10f64.powf((high - low).log10().floor() - 3.0);
-    if !(step.is_finite() && step > 0.0) || size >= 1e7 || size < 1e-4 {
+    if !(step.is_finite() && step > 0.0 && (1e-4..1e7).contains(&size)) {
         return short(value);
     }
     let decimals = (-step.log10()).round().clamp(0.0, 9.0) as usize;

@@ -174,7 +174,7 @@ fn seen_flip(
     let is_equal = colors.iter().all(|name| known(name).is_some_and(equal));
     if region.pixels() > LARGEST_WITH_FLIP && args.flip.is_none() && !is_equal {
         return Ok(Err(format!(
-            "left out of {}x{} pixels, which is over 2 megapixels; --flip behind the names computes it",
+            "left out of {}x{} pixels, which is over 2 megapixels; --flip after the names computes it",
             region.width, region.height
         )));
     }

@@ -65,7 +65,7 @@ fn flip_of_more_than_two_megapixels_is_for_those_who_ask() {
 fn flip_without_a_limit_goes_behind_the_names() {
     let folder = Folder::new();
     picture(&folder, "a.exr", [8, 8], 0.5);
-    compare(&folder, &["--flip", "a.exr", "a.exr"]).fails_with(2, &["--flip", "behind the names"]);
+    compare(&folder, &["--flip", "a.exr", "a.exr"]).fails_with(2, &["--flip", "after the names"]);
     let found = compared(&folder, &["a.exr", "a.exr", "--no-flip"]);
     assert_eq!((&found["flip"], &found["flip_why"]), (&Value::Null, &json!("left out")));
     let found = compared(&folder, &["a.exr", "a.exr", "--channels", "R"]);
