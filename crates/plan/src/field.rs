@@ -125,7 +125,7 @@ pub(crate) fn long_step(volumes: &Volumes, info: &VolumeInfo, object: &Object) -
         _ => f64::from(info.square_radius).sqrt(),
     };
     let step = f64::from(volumes.step);
-    if !(scale > 0.0) {
+    if scale.is_nan() || scale <= 0.0 {
         return None;
     }
     let good = match span > 0.0 && steep > 0.0 {
