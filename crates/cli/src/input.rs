@@ -26,7 +26,7 @@ pub struct Input {
     pub scene: Scene,
     /// What turns the view where the scene's camera does not say what is up.
     up: Up,
-    /// What else is said of the camera.
+    /// What else the command line says of the camera.
     options: CameraOptions,
     /// Of a point file without a scene.
     point_file: Option<PointFile>,

@@ -20,7 +20,7 @@ const FILM_PIXEL: u64 = 48;
 const POINT: u64 = 160;
 
 const MIB: u64 = 1 << 20;
-/// From here on, or from a quarter of what is free, it is said what work needs.
+/// From here on, or from a quarter of what is free, a line says what the work needs.
 const MUCH: u64 = 1 << 30;
 /// What a driver takes, with a fifth more than was measured: see [`require_driver`].
 const DRIVER_ADDRESSES: u64 = 400 * MIB;

@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 /// A stage shorter than this is not shown, and lines are at least this far apart.
 const PATIENCE: Duration = Duration::from_secs(1);
 const REDRAW: Duration = Duration::from_millis(100);
-/// How long a stage is watched before it is said how long it will take.
+/// How long a stage is watched before a line says how long it will take.
 const FORECAST_AFTER: Duration = Duration::from_secs(2);
 /// A stage that takes less from then on is none to speak of.
 const FORECAST_FROM: Duration = Duration::from_secs(60);

@@ -63,7 +63,7 @@ pub fn remove_all_at_once() {
 
 fn remove(all: &mut Vec<PathBuf>) {
     for folder in all.drain(..) {
-        // Nobody is left to be told.
+        // Nobody is left to read it.
         let _ = std::fs::remove_dir_all(folder);
     }
 }

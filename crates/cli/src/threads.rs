@@ -16,7 +16,7 @@ pub fn count() -> usize {
     COUNT.get().copied().unwrap_or_else(all)
 }
 
-/// Follows `--threads`. To be called before any other thread starts, so that software drivers can be told, too.
+/// Follows `--threads`. To be called before any other thread starts, so that it reaches software drivers, too.
 pub fn start(asked: Option<usize>) {
     if let Some(asked) = asked {
         // False only where the system hides how many threads there are: the driver then takes all cores.

@@ -252,7 +252,7 @@ fn power_label(digit: f64, power: i64) -> String {
     }
 }
 
-/// A number alone, in six digits.
+/// Only a number, in six digits.
 fn short(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),

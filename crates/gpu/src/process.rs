@@ -279,7 +279,7 @@ mod platform {
             let written = unsafe { libc::write(2, bytes.as_ptr().cast(), bytes.len()) };
             match usize::try_from(written) {
                 Ok(count @ 1..) => bytes = bytes.get(count..).unwrap_or_default(),
-                // Nobody is left to be told.
+                // Nobody is left to read it.
                 _ => return,
             }
         }

@@ -127,7 +127,7 @@ fn planned(
     loop {
         let begun = Instant::now();
         let mut plan = input.plan(sets, None, progress)?;
-        plan.aovs = false; // the picture alone is timed
+        plan.aovs = false; // only the picture is timed
         times.push(begun.elapsed());
         go_on()?;
         let is_scan = matches!(case.made, Some(Made::Scan(_)));

@@ -134,7 +134,7 @@ fn every_call_may_fail() {
             places.dedup();
             for at in places {
                 let fault = format!("{call}@{at}={result}");
-                // Until a device is open, the CPU can do its work; who asked for it is told that there is none.
+                // Until a device is open, the CPU can do its work; who asked for it gets an error.
                 let fell_back = faulty.falls_back(&fault, "");
                 let ran = faulty.render_on(&fault, Some("vulkan"));
                 let code = if fell_back { 3 } else { 4 };
