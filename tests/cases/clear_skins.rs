@@ -38,25 +38,34 @@ fn chord(from: V3, towards: V3, radius: f64) -> [f64; 2] {
     [if along < 0.0 { 2.0 * half } else { 0.0 }, nearest]
 }
 
+/// Where a pixel sees the floor past a ball of this radius, the direction of the light there, and what arrives of it
+/// across its way; `None` where it does not see the floor.
+fn seen_floor(pixel: usize, radius: f64, light: Light) -> Option<(V3, V3, f64)> {
+    let d = VIEW.through(pixel);
+    let t = (-1.5 - VIEW.eye[1]) / d[1];
+    let x = add(VIEW.eye, d, t);
+    let on_floor = t > 0.0 && x[0].abs() < 2.8 && x[2].abs() < 2.8;
+    if !on_floor || VIEW.distance(pixel, [0.0; 3]) < radius {
+        return None;
+    }
+    let (towards, irradiance) = match light {
+        Light::Sun => (unit(SUN.map(|c| -c)), 3.0),
+        Light::Lamp(place) => {
+            let way = add(place, x, -1.0);
+            (unit(way), 40.0 / dot(way, way))
+        }
+    };
+    Some((x, towards, irradiance))
+}
+
 /// Errors of the floor's radiance over what it is without shadow, at pixels that see it past a ball of this radius, and
 /// whose light does not graze that. `share` says what of the light is left, from where on the floor.
 fn floor_errors(film: &Film, radius: f64, light: Light, share: impl Fn(f64) -> V3) -> Vec<f64> {
     let mut errors = Vec::new();
     let mut shaded = 0;
     for pixel in 0..film.color.len() {
-        let d = VIEW.through(pixel);
-        let t = (-1.5 - VIEW.eye[1]) / d[1];
-        let x = add(VIEW.eye, d, t);
-        let on_floor = t > 0.0 && x[0].abs() < 2.8 && x[2].abs() < 2.8;
-        if !on_floor || VIEW.distance(pixel, [0.0; 3]) < 1.03 * radius {
+        let Some((x, towards, irradiance)) = seen_floor(pixel, 1.03 * radius, light) else {
             continue;
-        }
-        let (towards, irradiance) = match light {
-            Light::Sun => (unit(SUN.map(|c| -c)), 3.0),
-            Light::Lamp(place) => {
-                let way = add(place, x, -1.0);
-                (unit(way), 40.0 / dot(way, way))
-            }
         };
         let [inside, nearest] = chord(x, towards, radius);
         if (nearest / radius - 1.0).abs() < 0.03 {
@@ -472,19 +481,8 @@ fn rays_that_graze_a_coarse_skin_lose_no_light_beyond_it() {
             let film = render_twin(&plan).film;
             let mut worst = f64::NEG_INFINITY;
             for pixel in 0..film.color.len() {
-                let d = VIEW.through(pixel);
-                let t = (-1.5 - VIEW.eye[1]) / d[1];
-                let x = add(VIEW.eye, d, t);
-                let on_floor = t > 0.0 && x[0].abs() < 2.8 && x[2].abs() < 2.8;
-                if !on_floor || VIEW.distance(pixel, [0.0; 3]) < 1.06 {
+                let Some((x, towards, irradiance)) = seen_floor(pixel, 1.06, light) else {
                     continue;
-                }
-                let (towards, irradiance) = match light {
-                    Light::Sun => (unit(SUN.map(|c| -c)), 3.0),
-                    Light::Lamp(place) => {
-                        let way = add(place, x, -1.0);
-                        (unit(way), 40.0 / dot(way, way))
-                    }
                 };
                 let lit = 0.8 * FRAC_1_PI * irradiance * towards[1];
                 let [inside, nearest] = chord(x, towards, 1.0);

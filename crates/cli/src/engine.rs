@@ -98,8 +98,8 @@ pub struct Frame {
     pub traversal: Traversal,
 }
 
-/// Opens the engine that was asked for, or else the default, and lets `work` use it, which takes about `beside` bytes. What the validation layer has to
-/// say is said when everything is destroyed.
+/// Opens the engine that was asked for, or else the default, and lets `work` use it, which takes about `beside` bytes. The messages
+/// of the validation layer are reported when everything is destroyed.
 pub fn with_engine<T>(
     args: &DeviceArgs,
     beside: u64,

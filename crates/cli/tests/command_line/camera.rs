@@ -294,7 +294,7 @@ fn automatic_lights_follow_the_camera_until_they_are_given() {
     assert_eq!(key(&[]), [-0.5, -1.0, -0.6]);
     assert_eq!(key(&["--set", "camera.vertical_fov=20"]), [-0.5, -1.0, -0.6]);
     assert_eq!(key(&["--up", "z"]), [-0.5, 0.6, -1.0]);
-    // From behind, the light comes from there: the picture of a ball is as bright as from the front.
+    // Where the camera looks from the back, the light comes from there: the picture of a ball is as bright as from the front.
     let [front, back] = [key(&["--view", "front"]), key(&["--view", "back"])];
     assert!(close(back, [-front[0], front[1], -front[2]], 1e-9), "{front:?} {back:?}");
     let camera = "camera={ eye = [0, 0, -4], target = [0, 0, 0] }";

@@ -245,7 +245,7 @@ fn what_eight_bits_do_not_show_is_named() {
     render(&folder, &brighter).succeeds();
 }
 
-/// No scene of the repository, and no file of the shared data, is said to show nothing.
+/// No scene of the repository, and no file of the shared data, brings a warning that it shows nothing.
 #[test]
 fn no_scene_of_the_repository_is_called_empty() {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes");

@@ -1,4 +1,4 @@
-//! Numbers and presets that are mistyped: each is told in the words of its option.
+//! Numbers and presets that are mistyped: each error speaks in the words of its option.
 
 use crate::{Folder, run_in, sphere};
 
