@@ -2,7 +2,7 @@
 
 use crate::document::{Node, Value};
 use crate::error::Problem;
-use crate::{MaterialKind, Object, Scene};
+use crate::{Object, Scene};
 
 /// The names that a checked value holds.
 pub(crate) fn names(written: &Node) -> Vec<String> {
@@ -15,7 +15,7 @@ pub(crate) fn names(written: &Node) -> Vec<String> {
 
 /// What is wrong with it, if a name is not that of an object of glass.
 pub(crate) fn problem(document: &Node, scene: &Scene) -> Option<Problem> {
-    let is_glass = |object: &&Object| matches!(object.material.kind, MaterialKind::Glass { .. });
+    let is_glass = |object: &&Object| object.material.kind.has_inside();
     let known: Vec<&str> =
         scene.objects.iter().filter(is_glass).map(|object| object.name.as_str()).collect();
     let strange = scene.inside.iter().flatten().find(|name| !known.contains(&name.as_str()))?;

@@ -1,4 +1,4 @@
-//! Every key of a suite of benchmarks, as `keys.rs` has those of a scene.
+//! Every key of a suite of benchmarks, stated as those of a scene are.
 
 use crate::keys::Absent::{Required, Words};
 use crate::keys::{Fault, Kind, Table, count, key, numbers};

@@ -4,9 +4,9 @@ use crate::SceneError;
 use crate::check::check_as;
 use crate::document::{Node, Value, parse_value};
 use crate::error::{Problem, Source};
-use crate::keys::TRANSFER_FILE;
 use crate::load::{document_of, read_text, what_is_missing};
 use crate::root;
+use crate::volume::keys::TRANSFER_FILE;
 use std::path::Path;
 
 /// Stand in the place of those that are missing, so that the rest of the scene is checked.

@@ -1,0 +1,95 @@
+//! `[background]`: what rays that hit nothing see; and images that a scene names.
+
+use crate::document::Origin;
+use crate::keys::Absent::{Value, Words};
+use crate::keys::{Fault, Kind, RADIANCE, Table, key, numbers};
+use crate::read::Reader;
+use std::path::{Path, PathBuf};
+
+/// What rays that hit nothing see. It lights nothing else.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Background {
+    /// Radiance, each 0 to 1e15.
+    pub color: [f64; 3],
+    /// An equirectangular image instead.
+    pub environment: Option<ImageFile>,
+    /// How the environment is turned about the fixed x, y, z axes in that order, in degrees, each -1e6 to 1e6.
+    pub rotate: [f64; 3],
+}
+
+/// An image that the scene names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ImageFile {
+    /// Resolved against the scene file's folder.
+    pub path: PathBuf,
+    /// As the scene file names it, for headers: it says nothing about the machine.
+    pub as_written: String,
+}
+
+pub(crate) static BACKGROUND: Table = Table {
+    header: "[background]",
+    doc: "What rays that hit nothing see. It lights nothing else.",
+    whole: Some(background_is_one),
+    keys: &[
+        key("color", RADIANCE, Value("[0.0, 0.0, 0.0]"), "One radiance in every direction."),
+        key(
+            "environment",
+            Kind::Text("the path of an image"),
+            Words("none", "\"sky.exr\""),
+            "An equirectangular image (EXR or HDR; PNG and JPEG are decoded from sRGB) instead of \
+             `color`. Its top is the camera's `up` where that is an axis, so that the horizon is level; a \
+             direction (x, y, z) is looked up as (x, y, z) for +y, (x, -y, -z) for -y, (x, z, -y) for +z, \
+             (x, -z, y) for -z, (-y, x, z) for +x, (y, -x, z) for -x, and as for +y where `up` is no axis. In \
+             what is looked up +y is the top row, -z the middle, +x right of that.",
+        ),
+        key(
+            "rotate",
+            Kind::Vector(numbers(-1e6, 1e6, "degrees")),
+            Value("[0.0, 0.0, 0.0]"),
+            "Turns the environment about the world's fixed axes x, then y, then z, right-handed, as \
+             `transform.rotate` turns an object; an error without one.",
+        ),
+    ],
+};
+
+impl Background {
+    pub(crate) fn read(table: &Reader<'_>, folder: &Path) -> Self {
+        Self {
+            color: table.vector("color"),
+            environment: ImageFile::read(table, "environment", folder),
+            rotate: table.vector("rotate"),
+        }
+    }
+}
+
+impl ImageFile {
+    /// The image that a key names, if it is written.
+    pub(crate) fn read(table: &Reader<'_>, name: &str, folder: &Path) -> Option<Self> {
+        table.written(name)?;
+        let as_written = table.text(name);
+        Some(Self { path: folder.join(&as_written), as_written })
+    }
+}
+
+impl Default for Background {
+    fn default() -> Self {
+        Self::read(&Reader::defaults(&BACKGROUND), Path::new(""))
+    }
+}
+
+/// The background is a colour or an image. The colour that a point file rendered directly gets gives way.
+fn background_is_one(background: &Reader<'_>) -> Result<(), Fault> {
+    let color = background.written("color").filter(|node| node.origin != Origin::Given);
+    match (color, background.written("environment")) {
+        (Some(_), Some(_)) => Err((
+            "environment",
+            "found both color and environment, expected one of them; remove one".into(),
+        )),
+        (_, None) if background.vector("rotate") != [0.0; 3] => Err((
+            "rotate",
+            "found angles, expected none without environment, which they turn; add environment, or remove rotate"
+                .into(),
+        )),
+        _ => Ok(()),
+    }
+}
