@@ -9,7 +9,7 @@ use crate::errors::Failure;
 use crate::progress::Progress;
 use points::{Dimension, PointSet, ReadOptions, Sign, Wanted, Watch};
 use scalars::{first_scalar, part_of};
-use scene::{Albedo, MaterialKind, Object, Scene, SurfaceKind, Up};
+use scene::{Albedo, Object, Scene, SurfaceKind, Up};
 use serde_json::json;
 use std::fs;
 use std::path::Path;
@@ -170,7 +170,7 @@ impl PointFile {
     /// Whether nothing that was typed decides which colours there are.
     fn has_open_colors(&self, object: &Object) -> bool {
         let material = &object.material;
-        material.kind == MaterialKind::Diffuse
+        material.kind.has_albedo()
             && matches!(material.albedo, Albedo::Default)
             && !["albedo", "texture"]
                 .iter()

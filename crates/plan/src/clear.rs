@@ -1,7 +1,8 @@
 //! Surfaces between media of one index, which light passes (docs/method.md, section 6).
 
 use crate::Plan;
-use kernels::layout::{MATERIAL_GLASS, ObjectInfo, PASSED_NEAR};
+use crate::materials::has_inside;
+use kernels::layout::{ObjectInfo, PASSED_NEAR};
 use points::{Cloud, Shapes};
 
 /// Of the diagonal of an object's points: how far its surface may reach beyond their box.
@@ -12,14 +13,10 @@ fn share_an_index(a: [f32; 3], b: [f32; 3]) -> bool {
     (0..3).any(|channel| a[channel] == b[channel])
 }
 
-fn is_glass(object: &ObjectInfo) -> bool {
-    object.material == MATERIAL_GLASS
-}
-
 /// Whether glass may meet a medium of its own index anywhere.
 fn may_be_clear(objects: &[ObjectInfo]) -> bool {
     let glass: Vec<[f32; 3]> =
-        objects.iter().filter(|object| is_glass(object)).map(|object| object.ior).collect();
+        objects.iter().filter(|object| has_inside(object)).map(|object| object.ior).collect();
     (glass.iter().enumerate()).any(|(i, &ior)| {
         share_an_index(ior, [1.0; 3]) || glass[..i].iter().any(|&other| share_an_index(ior, other))
     })
@@ -27,7 +24,7 @@ fn may_be_clear(objects: &[ObjectInfo]) -> bool {
 
 /// Whether glass borders on air of its own index, or may on other glass of its own index: where their boxes meet.
 pub(crate) fn lets_light_pass(objects: &[ObjectInfo], cloud: &Cloud, shapes: &[Shapes]) -> bool {
-    let glass: Vec<usize> = (0..objects.len()).filter(|&at| is_glass(&objects[at])).collect();
+    let glass: Vec<usize> = (0..objects.len()).filter(|&at| has_inside(&objects[at])).collect();
     if glass.iter().any(|&at| share_an_index(objects[at].ior, [1.0; 3])) {
         return true;
     }
@@ -77,7 +74,7 @@ impl Plan {
     #[must_use]
     pub fn passed_of(&self, object: u32) -> u32 {
         let own = &self.objects[object as usize];
-        let clear = self.light_passes && is_glass(own) && share_an_index(own.ior, [1.0; 3]);
+        let clear = self.light_passes && has_inside(own) && share_an_index(own.ior, [1.0; 3]);
         if clear { object | PASSED_NEAR } else { object }
     }
 }

@@ -2,8 +2,8 @@
 //! map, or places in a texture; and how a texture is projected.
 
 use crate::PlanError;
+use crate::materials::DEFAULT_ALBEDO;
 use crate::missing::{NO_VALUE, marked};
-use crate::objects::DEFAULT_ALBEDO;
 use film::linear_from_srgb;
 use points::{ColorEncoding, PointSet};
 use scene::{ColorMap, Object, Scale, TextureAxis, Transform};

@@ -12,7 +12,7 @@ use kernels::layout::{
     LIGHT_POINT, Light, MEDIA_WORDS, VOLUME_ISOSURFACE, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo,
 };
 use points::{Cloud, PointSet, ShapeKind, Shapes};
-use scene::{MaterialKind, Scene, SurfaceKind};
+use scene::{Scene, SurfaceKind};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -41,7 +41,7 @@ pub(crate) fn media_of_eye(
 ) -> (Vec<u32>, Vec<String>) {
     let (mut media, mut spheres, mut doubts) = (Vec::new(), Vec::new(), Vec::new());
     for (object, index) in scene.objects.iter().zip(0u32..) {
-        if !matches!(object.material.kind, MaterialKind::Glass { .. }) {
+        if !object.material.kind.has_inside() {
             continue;
         }
         let held = spheres_around(known, index, eye);
@@ -77,9 +77,7 @@ pub(crate) fn media_of_lamps(
     lights: &[Light],
     (eye, of_eye): ([f64; 3], &[u32]),
 ) -> Vec<Option<Vec<u32>>> {
-    let is_glass = |index: u32| {
-        matches!(scene.objects[index as usize].material.kind, MaterialKind::Glass { .. })
-    };
+    let has_inside = |index: u32| scene.objects[index as usize].material.kind.has_inside();
     let asked = lights.iter().filter(|light| light.kind == LIGHT_POINT).count();
     let of = |light: &Light| {
         if light.kind != LIGHT_POINT {
@@ -101,7 +99,7 @@ pub(crate) fn media_of_lamps(
         let local_eye = local(known, eye).map(|x| x as f32);
         let is_at_eye = light.vector == local_eye;
         let may_be_in = |&index: &u32| {
-            is_glass(index)
+            has_inside(index)
                 && ((is_at_eye && of_eye.contains(&index))
                     || places.iter().any(|&place| may_be_inside(scene, known, index, place)))
         };

@@ -29,6 +29,7 @@ mod images;
 mod inside;
 mod isolated;
 mod lights;
+pub mod materials;
 mod missing;
 mod needs;
 mod neighborhoods;
@@ -37,6 +38,7 @@ mod objects;
 mod picture;
 mod precision;
 mod scales;
+mod scene_bits;
 mod shapes;
 mod transfer;
 mod volumes;
@@ -66,13 +68,9 @@ use denoise::denoise;
 use frame::{Sight, file_origin};
 use images::{ImageList, Use};
 use kernels::layout::{
-    self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, MATERIAL_DIFFUSE,
-    MATERIAL_GLASS, MEDIA_WORDS, NONE, ObjectInfo, SCENE_ABSORBS, SCENE_ALPHA, SCENE_BLENDS,
-    SCENE_CHANCE, SCENE_CLEAR, SCENE_DEPTHS, SCENE_DIAGNOSTICS, SCENE_DIFFUSE, SCENE_DISPERSES,
-    SCENE_ENVIRONMENT, SCENE_LIGHTS, SCENE_MANY_LIGHTS, SCENE_NESTED, SCENE_REFINES, SCENE_SAMPLES,
-    SCENE_SCATTERS, SCENE_SHAPES, SCENE_SPHERES, SCENE_TEXTURES, SCENE_TURNED, SCENE_VALUES,
-    SCENE_VOLUMES, TRANSPARENT_CAMERA, TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WAVE_LOSSES,
-    WAVE_VALUES, WaveParams,
+    self, BackgroundInfo, CHANNELS_ALL, CameraParams, FitParams, ImageInfo, MEDIA_WORDS, NONE,
+    ObjectInfo, TRANSPARENT_CAMERA, TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WAVE_LOSSES, WAVE_VALUES,
+    WaveParams,
 };
 use lights::local_light;
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
@@ -277,7 +275,7 @@ impl Plan {
             (&mut list, &mut found),
         )?;
         color_isosurfaces(scene, &volumes, &mut objects);
-        let channel_alpha = objects.iter().any(objects::tells_channels_apart);
+        let channel_alpha = objects.iter().any(materials::tells_channels_apart);
         let environment = match &scene.background.environment {
             Some(file) => {
                 add_image(&mut list, images.environment.as_ref(), file, Use::Environment)?
@@ -473,19 +471,6 @@ impl Plan {
         self.extras.iter().any(|extra| matches!(extra, Extra::Volume | Extra::Value))
     }
 
-    /// Whether any surface sends rays on.
-    #[must_use]
-    pub fn scatters(&self) -> bool {
-        self.objects.iter().any(|object| object.material != MATERIAL_DIFFUSE)
-    }
-
-    /// Rays of a wave that a pixel may have at most: where glass disperses, one a channel.
-    #[must_use]
-    pub fn rays_per_pixel(&self) -> u32 {
-        let disperses = |object: &ObjectInfo| object.ior.iter().any(|&ior| ior != object.ior[0]);
-        if self.objects.iter().any(disperses) { 3 } else { 1 }
-    }
-
     /// The tiles of the picture, row by row.
     #[must_use]
     pub fn tiles(&self) -> Vec<Window> {
@@ -525,53 +510,6 @@ impl Plan {
             sample_index: self.sample_index(sample),
             ..self.wave
         }
-    }
-
-    /// `SCENE_*`: what kernels of this plan have to do.
-    #[must_use]
-    pub fn scene_bits(&self) -> u32 {
-        fn is_glass(object: &ObjectInfo) -> bool {
-            object.material == MATERIAL_GLASS
-        }
-        let any = |has: fn(&ObjectInfo) -> bool| self.objects.iter().any(has);
-        let spheres = || self.shapes.iter().filter(|shapes| shapes.kind == ShapeKind::Sphere);
-        [
-            (SCENE_ENVIRONMENT, self.wave.background.environment != NONE),
-            (SCENE_BLENDS, any(|object| object.blends != 0)),
-            (SCENE_LIGHTS, !self.lights.is_empty()),
-            (SCENE_ALPHA, self.channel_alpha),
-            (SCENE_DIAGNOSTICS, !self.diagnostics.is_empty()),
-            (SCENE_VALUES, any(|object| object.first_color != NONE)),
-            (SCENE_TEXTURES, any(|object| object.texture != NONE)),
-            (SCENE_SAMPLES, self.samples > 1),
-            (SCENE_REFINES, self.refines()),
-            (SCENE_DIFFUSE, any(|object| object.material == MATERIAL_DIFFUSE)),
-            (SCENE_SCATTERS, self.scatters()),
-            (SCENE_NESTED, self.objects.iter().filter(|object| is_glass(object)).count() > 1),
-            // A ray may be inside several spheres of one object.
-            (SCENE_NESTED, spheres().any(|shapes| is_glass(&self.objects[shapes.object as usize]))),
-            (SCENE_SHAPES, !self.shapes.is_empty()),
-            (SCENE_SPHERES, spheres().next().is_some()),
-            (SCENE_DISPERSES, self.rays_per_pixel() > 1),
-            (SCENE_ABSORBS, any(|object| is_glass(object) && object.absorption != [0.0; 3])),
-            (SCENE_CHANCE, self.wave.fresnel != 0),
-            (SCENE_VOLUMES, !self.volumes.infos.is_empty()),
-            (SCENE_MANY_LIGHTS, self.lights.len() > 1),
-            (SCENE_TURNED, self.turns_environment()),
-            (SCENE_CLEAR, self.may_be_clear()),
-            (SCENE_DEPTHS, self.wants_volume_depth()),
-        ]
-        .into_iter()
-        .fold(
-            self.volumes.scene_bits(),
-            |bits, (bit, is_set)| if is_set { bits | bit } else { bits },
-        )
-    }
-
-    /// Whether directions are turned before they are looked up in the environment.
-    fn turns_environment(&self) -> bool {
-        let at = self.wave.background.environment;
-        at != NONE && environment::turns(&self.images[at as usize + 1..][..3])
     }
 
     /// As kernels take it: the one sample of a pixel is none of a sequence, nor is [`CENTER`].

@@ -3,18 +3,18 @@
 use crate::colors::UV;
 use points::{Column, Columns, Filter, ReadOptions, Voxel, Wanted};
 use scene::{
-    Albedo, Boundary, MaterialKind, Object, PerParticle, PointColumn, PointColumns, PointFilter,
-    RadiusOf, SurfaceKind, TextureAxis, VolumeKernel, VolumeMode, VoxelEdge,
+    Albedo, Boundary, Object, PerParticle, PointColumn, PointColumns, PointFilter, RadiusOf,
+    SurfaceKind, TextureAxis, VolumeKernel, VolumeMode, VoxelEdge,
 };
 
 /// How an object's file is to be read for a render.
 #[must_use]
 pub fn read_options(object: &Object) -> ReadOptions {
     let mut names: Vec<&str> = Vec::new();
-    let diffuse = object.material.kind == MaterialKind::Diffuse;
+    let has_albedo = object.material.kind.has_albedo();
     let mut colors = false;
     match &object.material.albedo {
-        Albedo::Default | Albedo::Points => colors = diffuse,
+        Albedo::Default | Albedo::Points => colors = has_albedo,
         Albedo::Attribute { name, .. } => names.push(name),
         Albedo::Texture { axis: None | Some(TextureAxis::Uv), .. } => {
             names.extend(UV.iter().flatten());
@@ -46,7 +46,7 @@ pub fn read_options(object: &Object) -> ReadOptions {
     }
     let wanted = Wanted::Some {
         colors,
-        normals: discs || matches!(object.material.kind, MaterialKind::Glass { .. }),
+        normals: discs || object.material.kind.has_inside(),
         attributes: names.into_iter().map(str::to_owned).collect(),
     };
     ReadOptions {

@@ -11,13 +11,11 @@ pub use blank::{Shown, blank};
 
 use crate::Plan;
 use crate::crossings::votes;
+use crate::materials::{dims, has_inside, is_lit, sends_rays_on};
 use crate::shapes::surface_slots;
-use kernels::layout::{
-    LIGHT_POINT, MATERIAL_DIFFUSE, MATERIAL_GLASS, NONE, PERSPECTIVE, VOLUME_EMITS,
-    VOLUME_ISOSURFACE,
-};
+use kernels::layout::{LIGHT_POINT, NONE, PERSPECTIVE, VOLUME_EMITS, VOLUME_ISOSURFACE};
 use points::PointSet;
-use scene::{MaterialKind, Scene};
+use scene::Scene;
 use std::sync::Arc;
 
 /// Point lights of which it is asked whether a surface is around them.
@@ -74,13 +72,13 @@ impl Asked<'_> {
             let mut own = volumes.filter(|info| info.object as usize == object);
             own.any(|info| info.mode != VOLUME_ISOSURFACE && info.shading != VOLUME_EMITS)
         };
-        let is_diffuse = |object: usize| {
+        let shows_light = |object: usize| {
             let info = &self.plan.objects[object];
             let colored = info.first_color != NONE || info.texture != NONE;
-            info.material == MATERIAL_DIFFUSE && (colored || info.albedo != [0.0; 3])
+            is_lit(info) && (colored || info.albedo != [0.0; 3])
         };
         (0..self.plan.objects.len())
-            .find(|&object| scatters(object) || self.has_surface(object) && is_diffuse(object))
+            .find(|&object| scatters(object) || self.has_surface(object) && shows_light(object))
     }
 
     fn is_unlit(&self) -> Option<String> {
@@ -122,7 +120,7 @@ impl Asked<'_> {
             votes.is_clear().then(|| votes.says_inside())
         };
         let closes = |object: &usize| {
-            let is_opaque = plan.objects[*object].material == MATERIAL_DIFFUSE;
+            let is_opaque = !sends_rays_on(&plan.objects[*object]);
             is_opaque
                 && shining().all(|light| around(*object, light.vector) == Some(true))
                 && around(*object, plan.camera.eye) == Some(false)
@@ -143,10 +141,9 @@ impl Asked<'_> {
         }
         let is_black = scene.background.color == [0.0; 3];
         let marched = plan.volumes.infos.iter().any(|info| info.mode != VOLUME_ISOSURFACE);
-        let shows = |object: &usize| match scene.objects[*object].material.kind {
-            MaterialKind::Diffuse => true,
-            MaterialKind::Mirror { reflectance } => !is_black && reflectance != [1.0; 3],
-            MaterialKind::Glass { absorption, .. } => !is_black && absorption != [0.0; 3],
+        let shows = |object: &usize| {
+            let info = &plan.objects[*object];
+            is_lit(info) || (!is_black && dims(info))
         };
         let surfaces: Vec<usize> =
             (0..plan.objects.len()).filter(|&object| self.has_surface(object)).collect();
@@ -154,10 +151,7 @@ impl Asked<'_> {
             return None;
         }
         let name = self.name(surfaces[0]);
-        let what = match scene.objects[surfaces[0]].material.kind {
-            MaterialKind::Mirror { .. } => "a mirror",
-            _ => "glass",
-        };
+        let what = scene.objects[surfaces[0]].material.kind.noun();
         let color = if is_black { "a black background" } else { "a background of one colour" };
         Some(format!(
             "object '{name}' is not seen: it is {what} before {color}, and there is nothing else to see in it; give \
@@ -173,8 +167,9 @@ impl Asked<'_> {
         let around: Vec<[f32; 3]> = around.chain([[1.0; 3]]).collect();
         let scattering = |&object: &usize| {
             let info = &self.plan.objects[object];
-            let may_pass = info.material == MATERIAL_GLASS && around.contains(&info.ior);
-            info.material != MATERIAL_DIFFUSE && !may_pass && self.has_surface(object)
+            let may_pass = has_inside(info) && around.contains(&info.ior);
+            let shows_rays_alone = sends_rays_on(info) && !is_lit(info);
+            shows_rays_alone && !may_pass && self.has_surface(object)
         };
         let object = (0..self.plan.objects.len()).find(scattering)?;
         (self.plan.wave.max_bounces == 0).then(|| {

@@ -1,22 +1,16 @@
-//! What kernels take of each object: parameters of its fit, its material, what its points carry.
+//! What kernels take of each object: parameters of its fit, its material ([`crate::materials`]), what its points carry.
 
 use crate::chosen::Findings;
 use crate::images::{ImageList, Use};
+use crate::materials::Optics;
 use crate::missing::{Lacking, Missing, count_marked};
 use crate::{PlanError, SceneImages, Volumes, colors};
-use kernels::layout::{
-    FIT_FULL, FIT_INCOMPLETE, FitParams, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR, NONE,
-    ObjectInfo,
-};
+use kernels::layout::{FIT_FULL, FIT_INCOMPLETE, FitParams, NONE, ObjectInfo};
 use points::{Cloud, PointSet, SlotRange};
 use scene::{
-    Albedo, FeatureSize, Material, MaterialKind, Normals, Object, Polynomial, Refine, Scene,
-    TextureAxis, VolumeMode,
+    Albedo, FeatureSize, Normals, Object, Polynomial, Refine, Scene, TextureAxis, VolumeMode,
 };
 use std::sync::Arc;
-
-/// Albedo of objects whose points have no colours and whose material names none.
-pub(crate) const DEFAULT_ALBEDO: [f32; 3] = [0.8; 3];
 
 fn kind_of(polynomial: Polynomial) -> u32 {
     match polynomial {
@@ -67,8 +61,8 @@ pub(crate) fn object_infos(
     for (index, (object, set)) in scene.objects.iter().zip(sets).enumerate() {
         let values = point_values((index, object), set, |place| cloud.counts(index, place), found)?;
         let (mut texture, mut rows) = (NONE, [[0.0; 4]; 2]);
-        if let (MaterialKind::Diffuse, Albedo::Texture { file, axis }) =
-            (object.material.kind, &object.material.albedo)
+        if let (true, Albedo::Texture { file, axis }) =
+            (object.material.kind.has_albedo(), &object.material.albedo)
         {
             let image = images.textures.get(index).and_then(Option::as_ref);
             texture = add_image(list, image, file, Use::Texture)?;
@@ -131,45 +125,6 @@ pub(crate) fn object_infos(
     Ok((infos, colors))
 }
 
-/// What kernels take of a material.
-struct Optics {
-    albedo: [f32; 3],
-    material: u32,
-    ior: [f32; 3],
-    priority: i32,
-    absorption: [f32; 3],
-}
-
-impl Optics {
-    fn of(material: &Material) -> Self {
-        let f32s = |v: [f64; 3]| v.map(|x| x as f32);
-        let albedo = match material.albedo {
-            Albedo::Color(color) => f32s(color),
-            _ => DEFAULT_ALBEDO,
-        };
-        let diffuse = Self {
-            albedo,
-            material: MATERIAL_DIFFUSE,
-            ior: [1.0; 3],
-            priority: 0,
-            absorption: [0.0; 3],
-        };
-        match material.kind {
-            MaterialKind::Diffuse => diffuse,
-            MaterialKind::Mirror { reflectance } => {
-                Self { albedo: f32s(reflectance), material: MATERIAL_MIRROR, ..diffuse }
-            }
-            MaterialKind::Glass { ior, priority, absorption } => Self {
-                material: MATERIAL_GLASS,
-                ior: f32s(ior),
-                priority,
-                absorption: f32s(absorption),
-                ..diffuse
-            },
-        }
-    }
-}
-
 fn is_isosurface(object: &Object) -> bool {
     object.volume.as_ref().is_some_and(|volume| matches!(volume.mode, VolumeMode::Isosurface(_)))
 }
@@ -180,8 +135,8 @@ pub(crate) fn color_isosurfaces(scene: &Scene, volumes: &Volumes, infos: &mut [O
         let object = &scene.objects[volume.object as usize];
         let has_transfer = object.volume.as_ref().is_some_and(|volume| volume.transfer.is_some());
         let has_albedo = matches!(object.material.albedo, Albedo::Color(_));
-        let diffuse = object.material.kind == MaterialKind::Diffuse;
-        if is_isosurface(object) && has_transfer && diffuse && !has_albedo {
+        let takes_albedo = object.material.kind.has_albedo();
+        if is_isosurface(object) && has_transfer && takes_albedo && !has_albedo {
             let color = volumes.color_of(volume, volume.iso);
             infos[volume.object as usize].albedo = color.map(|channel| channel.clamp(0.0, 1.0));
         }
@@ -202,7 +157,7 @@ fn point_values(
     counts: impl Fn(usize) -> bool,
     found: &mut Findings,
 ) -> Result<PointValues, PlanError> {
-    if object.material.kind != MaterialKind::Diffuse {
+    if !object.material.kind.has_albedo() {
         return Ok(PointValues::None);
     }
     if is_isosurface(object) {
@@ -247,10 +202,4 @@ pub(crate) fn add_image(
     let Some(image) = image else { unreachable!("the image '{}' is not given", file.as_written) };
     list.add(image, &file.as_written, used)
         .ok_or_else(|| PlanError::TooManyTexels(file.as_written.clone()))
-}
-
-/// Whether an object is of glass that bends or absorbs one channel more than another.
-pub(crate) fn tells_channels_apart(object: &ObjectInfo) -> bool {
-    let differ = |[r, g, b]: [f32; 3]| r != g || g != b;
-    object.material == MATERIAL_GLASS && (differ(object.ior) || differ(object.absorption))
 }

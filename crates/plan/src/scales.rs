@@ -2,7 +2,7 @@
 
 use crate::colors::{mapped, part_of};
 use crate::{Choice, Chosen, Volumes};
-use scene::{Albedo, Boundary, ColorMap, MaterialKind, Object, Scale, Scene, Transfer, VolumeMode};
+use scene::{Albedo, Boundary, ColorMap, Object, Scale, Scene, Transfer, VolumeMode};
 
 /// Colours of a scale.
 const COLORS: u32 = 256;
@@ -50,7 +50,7 @@ fn of_surface(index: usize, object: &Object, range_of: RangeOf<'_>) -> Option<Co
     let Albedo::Attribute { name, color_map, range, scale } = &object.material.albedo else {
         return None;
     };
-    let is_shown = is_drawn && object.material.kind == MaterialKind::Diffuse;
+    let is_shown = is_drawn && object.material.kind.has_albedo();
     let range = range_of(*range, "material.value_range").filter(|_| is_shown)?;
     Some(of_map(index, name, *color_map, range, *scale))
 }

@@ -11,7 +11,7 @@ use points::neighbors::median_spacing;
 use points::{Cloud, FARTHEST, NeighborSearch, PointSet, SlotRange, Watch, bounds_of};
 pub use points::{ShapeKind, Shapes};
 use rayon::prelude::*;
-use scene::{MaterialKind, Object, RadiusOf, Scatter, Scene, ShapeRadius, SurfaceKind};
+use scene::{Object, RadiusOf, Scatter, Scene, ShapeRadius, SurfaceKind};
 use std::sync::Arc;
 
 /// Of half the diagonal of a scene's box: spheres and discs that reach farther are framed with their extents, unless
@@ -37,14 +37,10 @@ pub(crate) fn surface_slots(cloud: &Cloud, shapes: &[Shapes], object: usize) -> 
 /// no inside.
 #[must_use]
 pub fn scatter_kind(object: &Object) -> Option<ShapeKind> {
-    match (object.surface.scatter, object.material.kind) {
+    match (object.surface.scatter, object.material.kind.has_inside()) {
         (Scatter::Drop, _) => None,
-        (Scatter::Discs, MaterialKind::Diffuse | MaterialKind::Mirror { .. }) => {
-            Some(ShapeKind::Disc)
-        }
-        (Scatter::Spheres, _) | (Scatter::Discs, MaterialKind::Glass { .. }) => {
-            Some(ShapeKind::Sphere)
-        }
+        (Scatter::Discs, false) => Some(ShapeKind::Disc),
+        (Scatter::Spheres, _) | (Scatter::Discs, true) => Some(ShapeKind::Sphere),
     }
 }
 

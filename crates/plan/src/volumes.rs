@@ -19,8 +19,8 @@ use kernels::layout::{
 };
 use points::{Cloud, PointSet, Watch, bounds_of};
 use scene::{
-    Boundary, ExtinctionFactor, MaterialKind, Object, PerParticle, Scene, Transfer, Volume,
-    VolumeKernel, VolumeMode, VolumeShading,
+    Boundary, ExtinctionFactor, Object, PerParticle, Scene, Transfer, Volume, VolumeKernel,
+    VolumeMode, VolumeShading,
 };
 use std::sync::Arc;
 
@@ -450,7 +450,7 @@ impl Volumes {
             slot: u32::from(self.stops[first_stop as usize..].iter().any(has_emission)),
             refracts: u32::from(
                 matches!(volume.mode, VolumeMode::Isosurface(_))
-                    && matches!(object.material.kind, MaterialKind::Glass { .. }),
+                    && object.material.kind.has_inside(),
             ),
             shading: match volume.shading {
                 VolumeShading::None => VOLUME_EMITS,

@@ -1,0 +1,142 @@
+//! Twin of `glsl/shared/material.glsl`: what surfaces do with light and with rays. Each kind of material has its
+//! functions in a file below `material/`; here they are called by kind.
+//!
+//! Whether a kind is lit, sends rays on and has an inside are properties, which [`plan::materials`] states.
+
+mod diffuse;
+mod glass;
+mod mirror;
+
+use crate::media::{Crossing, Media, Way};
+use crate::real::{Real, V3};
+use kernels::layout::{
+    MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR, MOST_CROSSINGS, NONE, ObjectInfo,
+    SAMPLE_FRESNEL, WaveParams,
+};
+use plan::materials::{has_inside, is_lit, sends_rays_on};
+
+/// What becomes of a ray at a surface.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Fate {
+    /// Lights of the scene light the surface.
+    pub lit: bool,
+    /// Rays go on from it.
+    pub sends: bool,
+    /// How they go through it, where it has an inside.
+    pub crossing: Option<Crossing>,
+    /// The ray goes through as if there were nothing: no bounce.
+    pub passes: bool,
+    /// It becomes one ray a channel.
+    pub splits: bool,
+}
+
+/// The fate of a ray of these channels, which is inside `media`.
+pub(crate) fn fate_at(
+    object: u32,
+    objects: &[ObjectInfo],
+    (media, way, channels): (&Media, Way, u32),
+) -> Fate {
+    let info = &objects[object as usize];
+    let crossing = has_inside(info).then(|| media.crossing(object, way, objects));
+    let passes = crossing.is_some_and(|crossing| crossing.passes(channels, objects));
+    Fate {
+        lit: is_lit(info),
+        sends: sends_rays_on(info),
+        crossing,
+        passes,
+        splits: !passes && crossing.is_some_and(|crossing| crossing.splits(channels, objects)),
+    }
+}
+
+impl Fate {
+    /// Whether rays may still go on, after so many bounces and crossings.
+    pub fn goes_on(&self, [bounces, crossings]: [u32; 2], max_bounces: u32) -> bool {
+        if self.passes { crossings < MOST_CROSSINGS } else { bounces < max_bounces }
+    }
+}
+
+/// Where a ray meets a surface.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place<'a, R> {
+    /// The ray's direction.
+    pub d: V3<R>,
+    /// Of the surface, facing the ray's origin.
+    pub normal: V3<R>,
+    pub info: &'a ObjectInfo,
+}
+
+/// The numbers of a pixel's sample that decide what happens at a bounce.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Drawn<R> {
+    /// Under it, glass reflects; `None`: it refracts wherever it can.
+    pub chance: Option<R>,
+}
+
+impl<R: Real> Drawn<R> {
+    pub fn at(params: &WaveParams, pixel: [u32; 2], bounce: u32) -> Self {
+        let sample = if params.sample_index == NONE { 0 } else { params.sample_index };
+        let chance =
+            || crate::sampler::sample_1d(pixel, sample, params.seed, SAMPLE_FRESNEL + bounce);
+        Self { chance: (params.fresnel != 0).then(chance) }
+    }
+}
+
+/// A ray that goes on from a surface.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sent<R> {
+    pub direction: V3<R>,
+    /// What it keeps of its throughput.
+    pub weight: V3<R>,
+    /// It stays on the side that it came from.
+    pub reflects: bool,
+}
+
+/// The ray of these channels that goes on.
+pub(crate) fn sent_on<R: Real>(
+    place: &Place<'_, R>,
+    fate: &Fate,
+    channels: u32,
+    drawn: &Drawn<R>,
+    objects: &[ObjectInfo],
+) -> Sent<R> {
+    match (place.info.material, &fate.crossing) {
+        (MATERIAL_MIRROR, _) => mirror::sent_on(place),
+        (MATERIAL_GLASS, Some(crossing)) => {
+            glass::sent_on(place, (crossing, fate.passes), channels, drawn, objects)
+        }
+        (kind, _) => unreachable!("material {kind} sends no rays on"),
+    }
+}
+
+/// What of light from `towards` a surface scatters to where the ray came from, but for what is the same for all
+/// directions.
+pub(crate) fn lobe<R: Real>(place: &Place<'_, R>, towards: V3<R>) -> V3<R> {
+    match place.info.material {
+        MATERIAL_DIFFUSE => diffuse::lobe(place, towards),
+        kind => unreachable!("material {kind} is not lit"),
+    }
+}
+
+/// What of the light that [`lobe`] left a surface scatters. `albedo` is that of the place.
+pub(crate) fn scattered<R: Real>(
+    info: &ObjectInfo,
+    light: V3<R>,
+    albedo: impl FnOnce() -> V3<R>,
+) -> V3<R> {
+    match info.material {
+        MATERIAL_DIFFUSE => diffuse::scattered(light, albedo()),
+        kind => unreachable!("material {kind} is not lit"),
+    }
+}
+
+/// Of each channel, whether light goes straight through a surface on its way to a place inside `media`.
+pub(crate) fn lets_light_pass(
+    object: u32,
+    objects: &[ObjectInfo],
+    (media, way): (&Media, Way),
+) -> [bool; 3] {
+    match has_inside(&objects[object as usize]) {
+        true => glass::lets_light_pass(&media.crossing(object, way, objects), objects),
+        false => [false; 3],
+    }
+}
