@@ -10,12 +10,13 @@
 // Kahan's summation: over thousands of samples, a plain sum would lose as many roundings.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/film.glsl"
 #include "math.glsl"
 #include "index.glsl"
 
 layout(local_size_x = TILE_GROUP) in;
-layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
+layout(std430, binding = FILM) buffer Film { FilmPixel film[]; };
 layout(std430, binding = FILM_SUMS) buffer Sums { FilmSum sums[]; };
 layout(push_constant) uniform Push { AccumulateParams params; };
 

@@ -8,14 +8,14 @@
 // With FEW, for k up to 16; else up to 64.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/search.glsl"
 #include "math.glsl"
 #include "index.glsl"
 #include "cloud.glsl"
 #include "nearest.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-WORDS(SEARCH_POINTS, points);
 layout(std430, binding = SEARCH_BOUNDS) writeonly buffer Bounds { float bounds[]; };
 layout(push_constant) uniform Push { SearchParams params; };
 
@@ -25,7 +25,7 @@ void main() {
     uint i = list_index();
     if (i >= params.batch_count) return;
     uint place = params.batch_first + i;
-    vec3 center = uintBitsToFloat(words_of(points, params.first_slot + place).xyz);
+    vec3 center = point_position_at(params.first_slot + place);
     uint unused = NEAREST - params.neighbors;
     float d[NEAREST];
 #define FIRST(j) d[j] = j < unused ? -1.0 : NO_HIT;
@@ -34,7 +34,7 @@ void main() {
     uint at = min(max(place, AROUND / 2u) - AROUND / 2u, last);
     uint end = min(at + AROUND, params.point_count);
     while (at < end) {
-        float square = square_of(uintBitsToFloat(words_of(points, params.first_slot + at).xyz) - center);
+        float square = square_of(point_position_at(params.first_slot + at) - center);
         square = at == place ? NO_HIT : square;
 #define SINK(j) d[j] = smaller(d[j], larger(d[j - 1u], square));
         EACH_BUT_FIRST_BACKWARDS(SINK)

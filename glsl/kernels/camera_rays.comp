@@ -14,7 +14,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_WRITES
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/rays.glsl"
+#include "stages/wave.glsl"
 #include "sampler.glsl"
 #include "levels.glsl"
 #include "state.glsl"
@@ -22,7 +24,7 @@
 
 layout(local_size_x = TILE_GROUP) in;
 layout(std430, binding = CAMERA_PATH) readonly buffer Start { Path start; };
-layout(std430, binding = WAVE_PATHS) writeonly buffer Paths { Path paths[]; };
+layout(std430, binding = PATHS) writeonly buffer Paths { Path paths[]; };
 layout(std430, binding = CAMERA_FILTER) readonly buffer Filter { float filter_steps[]; };
 layout(push_constant) uniform Push { CameraParams params; };
 #include "camera.glsl"

@@ -20,10 +20,15 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #define PACKETS
 #endif
-#define QUEUE // how lists are read
-#define LISTS
+#define QUEUE // the ray state, and
+#define TEXELS // lists as texels
 #define STATE_WRITES
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/discs.glsl"
+#include "stages/rays.glsl"
+#include "stages/wave.glsl"
+#include "stages/film.glsl"
 #ifdef TREE
 #include "tree_walk.glsl"
 #else
@@ -35,10 +40,10 @@
 #include "objects.glsl"
 
 layout(local_size_x = TILE_GROUP) in;
-layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
-layout(std430, binding = SHADE_FILM) writeonly buffer Film { FilmPixel film[]; };
-layout(std430, binding = WAVE_LIT_HITS) writeonly buffer LitHits { LitHit lit_hits[]; };
-layout(std430, binding = TRACE_HITS) writeonly buffer Hits { Hit hits[]; };
+layout(std430, binding = LIVE) buffer Live { uint live; };
+layout(std430, binding = FILM) writeonly buffer Film { FilmPixel film[]; };
+layout(std430, binding = LIT_HITS) writeonly buffer LitHits { LitHit lit_hits[]; };
+layout(std430, binding = HITS) writeonly buffer Hits { Hit hits[]; };
 layout(push_constant) uniform Push { CameraTraceParams params; };
 #include "camera.glsl"
 #include "film.glsl"
@@ -72,7 +77,7 @@ void main() {
 #else
     uvec2 tile = pixel / uint(DISC_TILE);
     Packet packet = packet_from(group * 8u + pixel_within(within & ~(PACKET - 1u)));
-    walk_discs(ray, disc_range_of(tile.y * screen_tiles(params.tile_size).x + tile.x), params.ranks, params.work, packet);
+    walk_discs(ray, disc_range_at(tile.y * screen_tiles(params.tile_size).x + tile.x), params.ranks, params.work, packet);
     bool alive = ray.cell != NONE;
 #endif
     if (alive) atomicAdd(live, 1u);

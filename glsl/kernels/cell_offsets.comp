@@ -9,13 +9,14 @@
 // Unlike ranges, offsets tell where a row of cells begins and ends, also through empty ones.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/grid.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = OFFSETS_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = OFFSETS_KEYS) readonly buffer Keys { uint keys[]; };
-layout(std430, binding = OFFSETS_OUT) writeonly buffer Offsets { uint offsets[]; };
+layout(std430, binding = GRID_INFO) readonly buffer Info { GridInfo grid; };
+layout(std430, binding = GRID_KEYS) readonly buffer Keys { uint keys[]; };
+layout(std430, binding = CELL_OFFSETS) writeonly buffer Offsets { uint offsets[]; };
 layout(push_constant) uniform Push { GridParams params; };
 
 void main() {

@@ -15,19 +15,22 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/rays.glsl"
+#include "stages/wave.glsl"
+#include "stages/volume.glsl"
+#include "stages/film.glsl"
 #include "environment.glsl"
-#include "hits.glsl"
 #include "math.glsl"
 #include "state.glsl"
-#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
-layout(std430, binding = WAVE_NEXT_PATHS) writeonly buffer WrittenPaths { Path written_paths[]; };
-layout(std430, binding = WAVE_LIT_HITS) writeonly buffer LitHits { LitHit lit_hits[]; };
-layout(std430, binding = MARCH_STATE) readonly buffer Marches { March marches[]; };
+layout(std430, binding = FILM) buffer Film { FilmPixel film[]; };
+layout(std430, binding = NEXT_PATHS) writeonly buffer WrittenPaths { Path written_paths[]; };
+layout(std430, binding = LIT_HITS) writeonly buffer LitHits { LitHit lit_hits[]; };
+layout(std430, binding = MARCHES) readonly buffer Marches { March marches[]; };
 layout(push_constant) uniform Push { WaveParams params; };
 #include "path.glsl"
 #include "media.glsl"
@@ -62,9 +65,9 @@ void main() {
     uint pixel = path.pixel;
     if (pixel == NONE) return;
     Ray ray = load_ray(at);
-    Hit hit = hit_of(at);
+    Hit hit = hit_at(at);
     bool found = ray.hit_slot != NONE;
-    uint object = found ? object_of(ray.hit_slot) : NONE;
+    uint object = found ? polynomial_object_at(ray.hit_slot) : NONE;
     vec3 throughput = path.throughput;
     Media media = Media(at, path.media_count);
     if (scene_has(SCENE_ABSORBS)) {

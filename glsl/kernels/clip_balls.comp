@@ -6,13 +6,13 @@
 // twin    crates/reference/src/rim.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
 #include "polynomial.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = CLIP_CLIPS) readonly buffer Clips { BallClip clips[]; };
-layout(std430, binding = CLIP_POLYNOMIALS) buffer Polynomials { Polynomial polynomials[]; };
+layout(std430, binding = CLIPS) readonly buffer Clips { BallClip clips[]; };
+layout(std430, binding = POLYNOMIALS) buffer Polynomials { Polynomial polynomials[]; };
 layout(push_constant) uniform Push { ClipParams params; };
 
 void main() {

@@ -6,12 +6,13 @@
 // twin    none: the CPU follows each ray to its end
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/rays.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = WAVE_MARKS) readonly buffer Marks { uint marks[]; };
-layout(std430, binding = LIVE_OFFSETS) writeonly buffer Offsets { uint offsets[]; };
+layout(std430, binding = MARKS) readonly buffer Marks { uint marks[]; };
+layout(std430, binding = MARK_OFFSETS) writeonly buffer Offsets { uint offsets[]; };
 layout(push_constant) uniform Push { MarkParams params; };
 
 void main() {

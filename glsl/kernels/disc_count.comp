@@ -8,7 +8,9 @@
 // A leaf is eight consecutive slots: neighbours in memory, and mostly on the screen.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/search.glsl"
+#include "stages/discs.glsl"
 #include "disc.glsl"
 #include "index.glsl"
 

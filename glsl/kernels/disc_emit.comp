@@ -8,24 +8,13 @@
 // twin    crates/reference/src/disc_bin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/search.glsl"
+#include "stages/discs.glsl"
 #include "disc.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-#ifdef QUEUE // as in records.glsl
-layout(binding = DISC_OFFSETS) uniform usamplerBuffer offset_texels; // one value each
-
-uint offset_of(uint leaf) {
-    return texelFetch(offset_texels, int(leaf)).x;
-}
-#else
-layout(std430, binding = DISC_OFFSETS) readonly buffer Offsets { uint offsets[]; };
-
-uint offset_of(uint leaf) {
-    return offsets[leaf];
-}
-#endif
 layout(std430, binding = DISC_KEYS) writeonly buffer Keys { uint keys[]; };
 layout(std430, binding = DISC_LEAVES) writeonly buffer Leaves { uint leaves[]; };
 layout(push_constant) uniform Push { DiscParams params; };
@@ -37,7 +26,7 @@ void main() {
     uint rank = depth_rank(params.ranks, discs.nearest);
     uint across = screen_tiles(params.camera.tile_size).x;
     uint count = discs.around.extent.x * discs.around.extent.y;
-    uint to = offset_of(leaf);
+    uint to = disc_offset_at(leaf);
     uvec2 tile = discs.around.low;
     for (uint i = 0u; i < count; ++i) {
         uint points = covering(discs, tile);

@@ -6,7 +6,8 @@
 // twin    crates/reference/src/disc_bin.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/discs.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;

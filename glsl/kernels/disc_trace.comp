@@ -12,19 +12,21 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/discs.glsl"
+#include "stages/rays.glsl"
 #include "disc_walk.glsl"
 #include "index.glsl"
 
 layout(local_size_x = TILE_GROUP) in;
-layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
+layout(std430, binding = LIVE) buffer Live { uint live; };
 layout(push_constant) uniform Push { DiscTraceParams params; };
 
 void main() {
     uvec2 tile = tile_pixel() / uint(DISC_TILE);
     uint at = tile_ray(params.tile_size);
     Ray ray = load_ray(at);
-    walk_discs(ray, disc_range_of(tile.y * screen_tiles(params.tile_size).x + tile.x), params.ranks, params.work);
+    walk_discs(ray, disc_range_at(tile.y * screen_tiles(params.tile_size).x + tile.x), params.ranks, params.work);
     store_progress(at, ray);
     if (ray.cell != NONE) atomicAdd(live, 1u);
 }

@@ -13,18 +13,17 @@
 // is not right, and ties says so.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/search.glsl"
 #include "math.glsl"
 #include "index.glsl"
 #include "cloud.glsl"
 #include "nearest.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-WORDS(SEARCH_POINTS, points);
 layout(std430, binding = SEARCH_BOUNDS) readonly buffer Bounds { float bounds[]; };
-WORDS(SEARCH_LEAVES, leaves); // four entries each
 layout(std430, binding = SEARCH_COUNTS) readonly buffer Counts { uint counts[]; };
-layout(std430, binding = SEARCH_LISTS) writeonly buffer Lists { uint lists[]; };
+layout(std430, binding = NEIGHBORS) writeonly buffer Lists { uint lists[]; };
 layout(std430, binding = SEARCH_GROUPS) readonly buffer Groups { uint groups[]; };
 #ifdef UNTIED
 layout(std430, binding = SEARCH_TIES) writeonly buffer Ties { uint ties[]; };
@@ -44,7 +43,7 @@ bool before(Key a, Key b) {
 }
 
 uint entry(uint at) {
-    uvec4 four = words_of(leaves, at >> 2u);
+    uvec4 four = search_leaf_four_at(at);
     uint low = (at & 1u) != 0u ? four.y : four.x;
     uint high = (at & 1u) != 0u ? four.w : four.z;
     return (at & 2u) != 0u ? high : low;
@@ -54,7 +53,7 @@ uint entry(uint at) {
 uint measured(uint slot, vec3 center, float bound) {
     uint bits = 0u;
 #define MEASURE(j) \
-    bits |= square_of(uintBitsToFloat(words_of(points, slot + j).xyz) - center) <= bound ? 1u << j : 0u;
+    bits |= square_of(point_position_at(slot + j) - center) <= bound ? 1u << j : 0u;
     FOUR(MEASURE, 0u) FOUR(MEASURE, 4u)
     return bits;
 }
@@ -67,7 +66,7 @@ void main() {
     if (i >= params.batch_count) return;
     uint slot = params.first_slot + params.batch_first + i;
     uint end = params.first_slot + params.point_count;
-    vec3 center = uintBitsToFloat(words_of(points, slot).xyz);
+    vec3 center = point_position_at(slot);
     uint list = nth * params.capacity;
     uint count = counts[nth];
     count = count != NONE ? count : 0u;
@@ -94,7 +93,7 @@ void main() {
         uint bits = 0u;
         uint e = 0u;
         while (e < 32u && done + e < count) {
-            uvec4 four = words_of(leaves, (list + done + e) >> 2u);
+            uvec4 four = search_leaf_four_at(list + done + e);
             uvec4 own = ((four >> own_bit) & 1u) << (uvec4(0u, 1u, 2u, 3u) + e);
             bits |= own.x | own.y | own.z | own.w;
             e += 4u;
@@ -115,8 +114,8 @@ void main() {
                 uint j = uint(findLSB(near));
                 near &= near - 1u;
                 uint other = (j < LEAF_POINTS ? slot_a : slot_b) + j % LEAF_POINTS;
-                uvec4 point = words_of(points, other);
-                float square = square_of(uintBitsToFloat(point.xyz) - center);
+                Point point = point_at(other);
+                float square = square_of(point.position - center);
                 bool counts = other != slot && other < end;
 #ifdef UNTIED
                 counts = counts && square <= last.square;
@@ -135,10 +134,10 @@ void main() {
                 found[0] = sinks ? other : found[0];
                 last.square = smaller(bound, d[NEAREST - 1u]);
 #else
-                Key key = Key(square, point.w);
+                Key key = Key(square, point.index);
                 counts = counts && before(key, last);
                 key.square = counts ? square : NO_HIT;
-                key.index = counts ? point.w : NONE;
+                key.index = counts ? point.index : NONE;
                 bool sinks = before(key, Key(d[NEAREST - 1u], index[NEAREST - 1u]));
 #define SINK(j) { \
     bool passes = before(key, Key(d[(j) - 1u], index[(j) - 1u])); \

@@ -13,7 +13,7 @@
 // before is singular.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
 #include "math.glsl"
 #include "eigen.glsl"
 #include "fit.glsl"
@@ -24,22 +24,20 @@
 #include "nearest.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-WORDS(FIT_POINTS, points);
-WORDS(FIT_NEIGHBORS, neighbors); // four slots each
-layout(std430, binding = FIT_POLYNOMIALS) writeonly buffer Polynomials { Polynomial polynomials[]; };
-layout(std430, binding = FIT_OUTCOMES) writeonly buffer Outcomes { FitOutcome outcomes[]; };
-layout(std430, binding = FIT_SIZES) readonly buffer Sizes { float sizes[]; };
-layout(std430, binding = FIT_RIMS) writeonly buffer Rims { Rim rims[]; };
+layout(std430, binding = POLYNOMIALS) writeonly buffer Polynomials { Polynomial polynomials[]; };
+layout(std430, binding = OUTCOMES) writeonly buffer Outcomes { FitOutcome outcomes[]; };
+layout(std430, binding = SIZES) readonly buffer Sizes { float sizes[]; };
+layout(std430, binding = RIMS) writeonly buffer Rims { Rim rims[]; };
 layout(push_constant) uniform Push { FitParams params; };
 
 #define SMALLEST_FEATURE 1e-15   // h under this: every neighbour lies on the point
 
 vec3 position_of(uint slot) {
-    return uintBitsToFloat(words_of(points, slot).xyz);
+    return point_position_at(slot);
 }
 
 uint neighbor(uint list, uint j) {
-    uvec4 four = words_of(neighbors, (list + j) >> 2u);
+    uvec4 four = neighbor_four_at(list + j);
     uint low = (j & 1u) != 0u ? four.y : four.x;
     uint high = (j & 1u) != 0u ? four.w : four.z;
     return (j & 2u) != 0u ? high : low;
@@ -82,13 +80,13 @@ void main() {
     if (i >= params.point_count) return;
     uint slot = params.first_slot + i;
     uint list = (slot - params.first_listed) * params.neighbors;
-    uvec4 point = words_of(points, slot);
-    vec3 center = uintBitsToFloat(point.xyz);
+    Point point = point_at(slot);
+    vec3 center = point.position;
 
     Distinct distinct = Distinct(1u, center, center, center, center, center);
 #ifdef FEW
     uvec4 slots[4];
-#define READ_LIST(j) slots[j] = words_of(neighbors, list / 4u + min(uint(j), params.neighbors / 4u - 1u));
+#define READ_LIST(j) slots[j] = neighbor_four_at(list + 4u * min(uint(j), params.neighbors / 4u - 1u));
     FOUR(READ_LIST, 0u)
     uint count = 0u;
     vec3 offsets[NEAREST];
@@ -204,7 +202,7 @@ void main() {
     float ratio = max(params.trust, min(reach_needed, 1.0));
     float trust = kind != FIT_NO_SURFACE ? ratio * h : 0.0;
     polynomials[slot - params.bound_from] =
-        to_world(center, trust, h, inverse_h, n, u, v, c, params.object, point.w);
+        to_world(center, trust, h, inverse_h, n, u, v, c, params.object, point.index);
     outcomes[slot - params.bound_from] = FitOutcome(trust, kind, h);
 
     float mean_u = dot3(mean, u), mean_v = dot3(mean, v);

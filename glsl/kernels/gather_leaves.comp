@@ -11,14 +11,13 @@
 // Points that are neighbours in memory look for theirs together: a box costs eight tests and one fetch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/search.glsl"
 #include "math.glsl"
 #include "index.glsl"
 #include "cloud.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-WORDS(SEARCH_POINTS, points);
-WORDS(SEARCH_NODES, nodes); // two a box
 layout(std430, binding = SEARCH_BOUNDS) readonly buffer Bounds { float bounds[]; };
 layout(std430, binding = SEARCH_LEAVES) writeonly buffer Leaves { uint leaves[]; };
 layout(std430, binding = SEARCH_COUNTS) writeonly buffer Counts { uint counts[]; };
@@ -29,7 +28,7 @@ layout(push_constant) uniform Push { SearchParams params; };
 vec4 ball(uint i) {
     bool is_there = i < params.batch_count;
     uint at = is_there ? i : 0u;
-    vec3 center = uintBitsToFloat(words_of(points, params.first_slot + params.batch_first + at).xyz);
+    vec3 center = point_position_at(params.first_slot + params.batch_first + at);
     return vec4(center, is_there ? bounds[at] : -1.0);
 }
 
@@ -50,8 +49,8 @@ void main() {
     uint steps = 0u;
     uint at = params.root;
     while (at != NONE && count <= params.capacity && steps < LEAF_STEPS) {
-        uvec4 first = words_of(nodes, 2u * at), second = words_of(nodes, 2u * at + 1u);
-        vec3 low = uintBitsToFloat(first.xyz), high = uintBitsToFloat(second.xyz);
+        SearchNode node = search_node_at(at);
+        vec3 low = node.low, high = node.high;
         uint mask = touches(b0, low, high, 1u) | touches(b1, low, high, 2u) | touches(b2, low, high, 4u)
             | touches(b3, low, high, 8u) | touches(b4, low, high, 16u) | touches(b5, low, high, 32u)
             | touches(b6, low, high, 64u) | touches(b7, low, high, 128u);
@@ -61,7 +60,7 @@ void main() {
             if (count < params.capacity) leaves[list + count] = at | (mask << LEAF_BITS);
             ++count;
         }
-        at = touched && !is_leaf ? first.w : second.w;
+        at = touched && !is_leaf ? node.child : node.next;
         ++steps;
     }
     counts[nth] = at == NONE && count <= params.capacity ? count : NONE;

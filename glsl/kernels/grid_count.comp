@@ -9,14 +9,14 @@
 // twin    crates/reference/src/grid_build.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/grid.glsl"
 #include "cloud.glsl"
 #include "slab.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = GRID_INFO) readonly buffer Info { GridInfo grid; };
-WORDS(GRID_BALLS, balls);
 layout(std430, binding = GRID_OFFSETS) writeonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = GRID_LARGE) writeonly buffer LargeOffsets { uint large_offsets[]; };
 layout(push_constant) uniform Push { GridParams params; };
@@ -24,7 +24,7 @@ layout(push_constant) uniform Push { GridParams params; };
 void main() {
     uint ordinal = list_index();
     if (ordinal >= params.point_count) return;
-    vec4 ball = uintBitsToFloat(words_of(balls, ordinal));
+    vec4 ball = ball_at(ordinal);
     float radius = ball.w * params.ball_scale;
     CellBox box = cells_of_slab(grid, params, ball);
     bool is_large = box.count > SMALL_BALL;

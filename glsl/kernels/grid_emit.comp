@@ -10,14 +10,14 @@
 // Pairs come out in the order of the points; the sort that follows is stable.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/grid.glsl"
 #include "cloud.glsl"
 #include "slab.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = GRID_INFO) readonly buffer Info { GridInfo grid; };
-WORDS(GRID_BALLS, balls);
 layout(std430, binding = GRID_ORDER) readonly buffer Order { uint order[]; };
 layout(std430, binding = GRID_OFFSETS) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = GRID_KEYS) writeonly buffer Keys { uint keys[]; };
@@ -28,7 +28,7 @@ void main() {
     uint ordinal = list_index();
     if (ordinal >= params.point_count) return;
     uint slot = order[ordinal];
-    vec4 ball = uintBitsToFloat(words_of(balls, ordinal));
+    vec4 ball = ball_at(ordinal);
     float radius = ball.w * params.ball_scale;
     CellBox box = cells_of_slab(grid, params, ball);
     uint end = box.count > SMALL_BALL ? 0u : box.count;

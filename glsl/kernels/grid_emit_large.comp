@@ -10,14 +10,14 @@
 // twin    crates/reference/src/grid_build.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/grid.glsl"
 #include "cloud.glsl"
 #include "slab.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = GRID_INFO) readonly buffer Info { GridInfo grid; };
-WORDS(GRID_BALLS, balls);
 layout(std430, binding = GRID_ORDER) readonly buffer Order { uint order[]; };
 layout(std430, binding = GRID_OFFSETS) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = GRID_KEYS) writeonly buffer Keys { uint keys[]; };
@@ -37,7 +37,7 @@ void main() {
         high = before ? high : middle;
     }
     uint slot = order[low];
-    vec4 ball = uintBitsToFloat(words_of(balls, low));
+    vec4 ball = ball_at(low);
     CellBox box = cells_of_slab(grid, params, ball);
     uint nth = i - large_offsets[low];
     uvec3 cell = cell_of_box(box, nth);

@@ -7,14 +7,15 @@
 // twin    crates/reference/src/grid_build.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/grid.glsl"
 #include "slab.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = GRID_INFO) readonly buffer Info { GridInfo grid; };
 layout(std430, binding = GRID_KEYS) readonly buffer Keys { uint keys[]; };
-layout(std430, binding = GRID_CELLS) writeonly buffer Cells { uvec2 cells[]; };
+layout(std430, binding = CELLS) writeonly buffer Cells { uvec2 cells[]; };
 layout(push_constant) uniform Push { GridParams params; };
 
 void main() {

@@ -15,26 +15,27 @@
 // where that hit is no farther than the exit of its cell, or where it leaves the grid. K = 1 is the
 // paper's loop; cells without points do not count. Any K gives the same bits: a pass can end after any
 // cell, and, so that no dispatch runs away, after any 32 points of one; cell and cursor say where to go on.
-// With LEAVES, rays start on surfaces, whose own sheet they do not meet again at once, and may end at
+// With LEAVING, rays start on surfaces, whose own sheet they do not meet again at once, and may end at
 // any hit: those towards lights. Light for the points of a volume passes the surface of its own object.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
-#define LISTS
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/grid.glsl"
+#include "stages/rays.glsl"
 #include "math.glsl"
 #include "levels.glsl"
 #include "scene.glsl"
 #include "shape.glsl"
 #include "polynomial.glsl"
 #include "state.glsl"
-#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
-layout(std430, binding = WAVE_MARKS) buffer Marks { uint marks[]; };
+layout(std430, binding = LIVE) buffer Live { uint live; };
+layout(std430, binding = MARKS) buffer Marks { uint marks[]; };
 layout(std430, binding = LIVE_RAYS) readonly buffer LiveRays { uint live_rays[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 
@@ -54,20 +55,20 @@ void main() {
     uint level = alive ? level_of_cell(cell) : 0u;
     GridLevel here = levels[level];
     uvec3 at = cell_of_id(here.grid, alive ? cell - here.first_cell : 0u); // once: lavapipe divides integers lane by lane
-    uvec2 range = alive ? range_of(cell) : uvec2(0u);
+    uvec2 range = alive ? range_at(cell) : uvec2(0u);
     uint next = range.x + ray.cursor;
     uint hit_object = NONE, hit_index = NONE;
     if (alive && ray.hit_slot != NONE) {
-        Polynomial hit = polynomial_of(ray.hit_slot);
+        Polynomial hit = polynomial_at(ray.hit_slot);
         hit_object = hit.object;
         hit_index = hit.index;
     }
-#ifdef LEAVES
+#ifdef LEAVING
     // The sheet that the ray starts on.
     vec3 left_normal = vec3(0.0);
     uint left_object = NONE;
     if (alive && ray.left != NONE) {
-        Polynomial left = polynomial_of(ray.left);
+        Polynomial left = polynomial_at(ray.left);
         left_normal = normal_at(left, o);
         left_object = left.object;
     }
@@ -84,11 +85,11 @@ void main() {
         within.x = everything ? -NO_HIT : within.x;
         within.y = later ? NO_HIT : within.y;
         for (uint at_four = first; at_four < end; at_four += 4u) {
-            uvec4 four = four_slots_at(at_four);
-            uint near = enters_trust_ball(o, d, center_trust_of(four.x), ray.hit_t, within) ? 1u : 0u;
-            near |= enters_trust_ball(o, d, center_trust_of(four.y), ray.hit_t, within) ? 2u : 0u;
-            near |= enters_trust_ball(o, d, center_trust_of(four.z), ray.hit_t, within) ? 4u : 0u;
-            near |= enters_trust_ball(o, d, center_trust_of(four.w), ray.hit_t, within) ? 8u : 0u;
+            uvec4 four = slot_four_at(at_four);
+            uint near = enters_trust_ball(o, d, polynomial_center_trust_at(four.x), ray.hit_t, within) ? 1u : 0u;
+            near |= enters_trust_ball(o, d, polynomial_center_trust_at(four.y), ray.hit_t, within) ? 2u : 0u;
+            near |= enters_trust_ball(o, d, polynomial_center_trust_at(four.z), ray.hit_t, within) ? 4u : 0u;
+            near |= enters_trust_ball(o, d, polynomial_center_trust_at(four.w), ray.hit_t, within) ? 8u : 0u;
             candidates |= near << (at_four - first);
         }
         candidates &= first < end ? (~0u << (next - first)) & (~0u >> (first + BATCH - end)) : 0u;
@@ -96,8 +97,8 @@ void main() {
         while (candidates != 0u) {
             uint slot = slot_at(first + uint(findLSB(candidates)));
             candidates &= candidates - 1u;
-            Polynomial p = polynomial_of(slot);
-#ifdef LEAVES
+            Polynomial p = polynomial_at(slot);
+#ifdef LEAVING
             bool own = p.object == left_object && same_sheet(p, o, left_normal);
             float from = own ? SHEET_REACH * p.center_trust.w : 0.0;
             if (scene_has(SCENE_VOLUMES) && scene_has(SCENE_CLEAR)) {
@@ -109,7 +110,7 @@ void main() {
             float from = 0.0;
 #endif
             float t = intersect(o, d, p, from);
-#ifdef LEAVES
+#ifdef LEAVING
             if (scene_has(SCENE_SPHERES)) {
                 bool is_left = slot == ray.left && is_sphere(p.gradient_offset.xyz);
                 t = is_left ? far_side(o, d, p.center_trust.xyz) : t;
@@ -129,7 +130,7 @@ void main() {
         next = end;
         work_left -= min(work_left, (end - first + 3u) / 4u + solved + 2u);
 
-#ifdef LEAVES
+#ifdef LEAVING
         bool stops = params.any_hit != 0u && ray.hit_slot != NONE;
         alive = !stops;
         cell = stops ? NONE : cell;
@@ -153,7 +154,7 @@ void main() {
                     ray.entry = cell;
                 }
             }
-            range = alive ? range_of(cell) : uvec2(0u);
+            range = alive ? range_at(cell) : uvec2(0u);
             next = range.x;
             seeking = alive && range.x == range.y;
             ray.cells += alive ? 1u : 0u;

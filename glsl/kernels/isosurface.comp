@@ -18,20 +18,23 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/rays.glsl"
+#include "stages/wave.glsl"
+#include "stages/volume.glsl"
 #include "math.glsl"
 #include "volume.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
-layout(std430, binding = WAVE_PATHS) buffer Paths { Path paths[]; };
+layout(std430, binding = LIVE) buffer Live { uint live; };
+layout(std430, binding = PATHS) buffer Paths { Path paths[]; };
 layout(std430, binding = ISO_SEARCHES) buffer Searches { IsoSearch searches[]; };
 #ifdef SHADOWS
-layout(std430, binding = WAVE_LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
+layout(std430, binding = LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
 #else
-layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
+layout(std430, binding = HITS) buffer Hits { Hit hits[]; };
 #endif
 layout(push_constant) uniform Push { MarchParams params; };
 
@@ -65,7 +68,7 @@ bool is_inside(uint path, uint object) {
 uint seen_from(VolumeInfo volume, vec3 x) {
     vec3 cells_off = (x - volume.grid.origin) * volume.grid.inverse_edge;
     bool inside = all(greaterThanEqual(cells_off, vec3(0.0))) && all(lessThan(cells_off, vec3(volume.grid.resolution)));
-    return inside ? volume_cell(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))).counts : CELL_NOTHING;
+    return inside ? volume_cell_at(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))).counts : CELL_NOTHING;
 }
 
 // The side of a place that need not be looked at, unless it tells where the surface is: where there are no
@@ -182,12 +185,12 @@ void main() {
             }
             uint pulls = turning ? count : 0u;
             for (uint i = 0u; i < pulls; ++i) {
-                VolumePoint point = volume_point(first + i);
+                VolumePoint point = volume_point_at(first + i);
                 vec3 y = point.position - x;
                 float square = dot3(y, y);
                 float gaussian =
                     square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
-                float inverse_length = particles ? inverse_length_of(first + i) : 0.0;
+                float inverse_length = particles ? inverse_length_at(first + i) : 0.0;
                 float pull = particles ? spline_pull(sqrt(square) * inverse_length, inverse_length) : gaussian;
                 search.pull += (pull * point.scalar) * y;
                 search.weights_pull += (particles ? 0.0 : pull) * y;

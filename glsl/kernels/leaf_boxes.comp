@@ -9,20 +9,15 @@
 // many, with all its points in the same place, is empty too: so a million of them cost no more than others.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/search.glsl"
 #include "index.glsl"
 #include "cloud.glsl"
 #include "node.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-WORDS(SEARCH_POINTS, points);
 layout(std430, binding = SEARCH_NODES) writeonly buffer Nodes { SearchNode nodes[]; };
 layout(push_constant) uniform Push { LevelParams params; };
-
-Point point_at(uint slot) {
-    uvec4 words = words_of(points, slot);
-    return Point(uintBitsToFloat(words.xyz), words.w);
-}
 
 // Whether the k + 1 points before this one lie where it does, in the order of the file.
 bool is_crowded(uint place) {

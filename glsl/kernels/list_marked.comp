@@ -8,12 +8,13 @@
 // twin    none: the CPU follows each ray to its end
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/rays.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = WAVE_MARKS) readonly buffer Marks { uint marks[]; };
-layout(std430, binding = LIVE_OFFSETS) readonly buffer Offsets { uint offsets[]; };
+layout(std430, binding = MARKS) readonly buffer Marks { uint marks[]; };
+layout(std430, binding = MARK_OFFSETS) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = LIST_IN) readonly buffer ListIn { uint list_in[]; };
 layout(std430, binding = LIVE_RAYS) writeonly buffer List { uint list[]; };
 layout(push_constant) uniform Push { MarkParams params; };

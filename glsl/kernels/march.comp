@@ -24,7 +24,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/rays.glsl"
+#include "stages/wave.glsl"
+#include "stages/volume.glsl"
 #include "math.glsl"
 #include "volume.glsl"
 #include "state.glsl"
@@ -35,19 +39,19 @@
 #endif
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
-layout(std430, binding = WAVE_PATHS) buffer Paths { Path paths[]; };
-layout(std430, binding = MARCH_STATE) buffer Marches { March marches[]; };
+layout(std430, binding = LIVE) buffer Live { uint live; };
+layout(std430, binding = PATHS) buffer Paths { Path paths[]; };
+layout(std430, binding = MARCHES) buffer Marches { March marches[]; };
 #ifdef LIT
 layout(std430, binding = MARCH_ENDS) buffer Ends { vec4 ends[]; };
 #else
 layout(std430, binding = MARCH_ENDS) buffer Ends { float ends[]; };
 #endif
 #ifdef SHADOWS
-layout(std430, binding = WAVE_LIT_RAYS) readonly buffer LitRays { uint lit_rays[]; };
-layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
+layout(std430, binding = LIT_RAYS) readonly buffer LitRays { uint lit_rays[]; };
+layout(std430, binding = LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
 #else
-layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
+layout(std430, binding = HITS) readonly buffer Hits { Hit hits[]; };
 
 uint media_word(uint ray, uint word) {
     return paths[ray].media[word];
@@ -55,21 +59,8 @@ uint media_word(uint ray, uint word) {
 #include "media.glsl"
 #endif
 #ifdef LIT
-layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
-layout(std430, binding = MARCH_LIGHT) buffer MarchLights { MarchLight march_lights[]; };
-#ifdef QUEUE
-layout(binding = MARCH_VISIBLE) uniform usamplerBuffer visible_texels; // four each
-
-vec4 visible_from(uint point) {
-    return uintBitsToFloat(texelFetch(visible_texels, int(point)));
-}
-#else
-layout(std430, binding = MARCH_VISIBLE) readonly buffer Visible { vec4 visible[]; };
-
-vec4 visible_from(uint point) {
-    return visible[point];
-}
-#endif
+layout(std430, binding = LIGHTS) readonly buffer Lights { Light lights[]; };
+layout(std430, binding = MARCH_LIGHTS) buffer MarchLights { MarchLight march_lights[]; };
 #endif
 layout(push_constant) uniform Push { MarchParams params; };
 
@@ -110,9 +101,9 @@ vec2 way_through(Ray ray, uint path, float end) {
 
 #ifdef LIT
 // What reaches the points, by their weights.
-vec4 visible_at(vec4 sum, vec4 weights, FourPoints four) {
-    return (((sum + weights.x * visible_from(four.at[0])) + weights.y * visible_from(four.at[1]))
-        + weights.z * visible_from(four.at[2])) + weights.w * visible_from(four.at[3]);
+vec4 visible_sum(vec4 sum, vec4 weights, FourPoints four) {
+    return (((sum + weights.x * visible_at(four.at[0])) + weights.y * visible_at(four.at[1]))
+        + weights.z * visible_at(four.at[2])) + weights.w * visible_at(four.at[3]);
 }
 #endif
 
@@ -140,7 +131,7 @@ Sample sample_of(Ray ray, vec2 way, float end, uint place, uint steps) {
 uint look_at(VolumeInfo volume, Sample at) {
     vec3 cells_off = (at.x - volume.grid.origin) * volume.grid.inverse_edge;
     bool inside = all(greaterThanEqual(cells_off, vec3(0.0))) && all(lessThan(cells_off, vec3(volume.grid.resolution)));
-    bool seen = volume_cell(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, at.x))).counts != 0u;
+    bool seen = volume_cell_at(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, at.x))).counts != 0u;
     return !inside || at.outside ? LOOK_OUTSIDE : (seen ? LOOK_AROUND : LOOK_NOWHERE);
 }
 
@@ -298,7 +289,7 @@ void main() {
 #ifdef LIT
                     sums.pull = add_up(sums.pull, weighted, four);
                     sums.weights_pull = add_up(sums.weights_pull, weights, four);
-                    sums.visible = visible_at(sums.visible, weights, four);
+                    sums.visible = visible_sum(sums.visible, weights, four);
 #endif
                 }
             }
@@ -312,7 +303,7 @@ void main() {
 #ifdef LIT
                     vec4 pulls = spline_pulls(sqrt(four.squares) * inverse_lengths, inverse_lengths);
                     sums.pull = add_up(sums.pull, mix(vec4(0.0), pulls * four.scalars, four.are_there), four);
-                    sums.visible = visible_at(sums.visible, weights, four);
+                    sums.visible = visible_sum(sums.visible, weights, four);
 #endif
                 }
             }

@@ -6,13 +6,14 @@
 // twin    crates/reference/src/grid_build.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/grid.glsl"
 #include "skip.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = GRID_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = GRID_CELLS) readonly buffer Cells { uvec2 cells[]; };
+layout(std430, binding = CELLS) readonly buffer Cells { uvec2 cells[]; };
 layout(std430, binding = SKIP_MARKS_OUT) writeonly buffer Marks { uint marks[]; };
 
 void main() {

@@ -6,7 +6,8 @@
 // twin    points::NeighborSearch (exact neighbours are one result)
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/search.glsl"
 #include "index.glsl"
 #include "node.glsl"
 

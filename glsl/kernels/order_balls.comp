@@ -9,12 +9,12 @@
 // Files may hold points in any order: each read may be a line of its own from memory. Here nothing else waits for it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/grid.glsl"
 #include "cloud.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-WORDS(GRID_POLYNOMIALS, polynomials); // four each
 layout(std430, binding = GRID_ORDER) readonly buffer Order { uint order[]; };
 layout(std430, binding = GRID_BALLS) writeonly buffer Balls { uvec4 balls[]; };
 layout(push_constant) uniform Push { GridParams params; };
@@ -22,5 +22,5 @@ layout(push_constant) uniform Push { GridParams params; };
 void main() {
     uint i = list_index();
     if (i >= params.point_count) return;
-    balls[i] = words_of(polynomials, 4u * order[params.first_pair + i]);
+    balls[i] = floatBitsToUint(polynomial_center_trust_at(order[params.first_pair + i]));
 }

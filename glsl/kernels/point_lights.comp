@@ -8,13 +8,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/wave.glsl"
+#include "stages/volume.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = WAVE_LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
-layout(std430, binding = MARCH_VISIBLE) writeonly buffer Visible { float visible[]; };
+layout(std430, binding = LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
+layout(std430, binding = VISIBLE) writeonly buffer Visible { float visible[]; };
 layout(push_constant) uniform Push { PointLightParams params; };
 
 void main() {

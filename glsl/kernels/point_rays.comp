@@ -13,7 +13,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_WRITES
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/wave.glsl"
+#include "stages/volume.glsl"
 #include "math.glsl"
 #include "levels.glsl"
 #include "light.glsl"
@@ -22,19 +24,19 @@
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
-layout(std430, binding = WAVE_PATHS) writeonly buffer Paths { Path paths[]; };
-layout(std430, binding = WAVE_LIT_RAYS) writeonly buffer LitRays { uint lit_rays[]; };
-layout(std430, binding = WAVE_LIGHT_SUMS) writeonly buffer LightSums { LightSum light_sums[]; };
+layout(std430, binding = LIGHTS) readonly buffer Lights { Light lights[]; };
+layout(std430, binding = PATHS) writeonly buffer Paths { Path paths[]; };
+layout(std430, binding = LIT_RAYS) writeonly buffer LitRays { uint lit_rays[]; };
+layout(std430, binding = LIGHT_SUMS) writeonly buffer LightSums { LightSum light_sums[]; };
 layout(push_constant) uniform Push { PointLightParams params; };
 
 void main() {
     uint at = list_index();
     if (at >= params.count) return;
-    vec3 x = volume_point(params.first + at).position;
+    vec3 x = volume_point_at(params.first + at).position;
     LightSample light = sample_light(lights[params.light], x, vec2(0.5));
     VolumeInfo volume = volumes[params.volume];
-    bool seen = volume_cell(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))).counts != CELL_NOTHING;
+    bool seen = volume_cell_at(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))).counts != CELL_NOTHING;
     Ray ray = new_ray(x, light.towards, seen ? enter_scene(x, light.towards) : NONE, NONE);
     ray.hit_t = light.distance;
     store_ray(at, ray);

@@ -17,7 +17,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/grid.glsl"
+#include "stages/rays.glsl"
+#include "stages/wave.glsl"
 #include "math.glsl"
 #include "levels.glsl"
 #include "eigen.glsl"
@@ -25,30 +29,14 @@
 #include "polynomial.glsl"
 #include "state.glsl"
 #include "objects.glsl"
-#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_LIVE) buffer Live { uint live; uint rejected; };
-layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
-layout(std430, binding = REFINE_OFFSETS) readonly buffer Offsets { uint offsets[]; };
-layout(std430, binding = REFINE_OUTCOMES) readonly buffer Outcomes { FitOutcome outcomes[]; };
+layout(std430, binding = LIVE) buffer Live { uint live; uint rejected; };
+layout(std430, binding = HITS) buffer Hits { Hit hits[]; };
+layout(std430, binding = CELL_OFFSETS) readonly buffer Offsets { uint offsets[]; };
+layout(std430, binding = OUTCOMES) readonly buffer Outcomes { FitOutcome outcomes[]; };
 layout(push_constant) uniform Push { TraceParams params; };
-
-#ifdef QUEUE // as in records.glsl
-layout(binding = REFINE_POINTS) uniform usamplerBuffer points;
-
-ListedPoint listed_point(uint i) {
-    uvec4 texel = texelFetch(points, int(i));
-    return ListedPoint(uintBitsToFloat(texel.xyz), texel.w);
-}
-#else
-layout(std430, binding = REFINE_POINTS) readonly buffer Points { ListedPoint points[]; };
-
-ListedPoint listed_point(uint i) {
-    return points[i];
-}
-#endif
 
 #define REACH 3.0        // of the weights, over h
 #define MAX_ROWS 1024u   // of cells that a neighbourhood may span
@@ -120,16 +108,16 @@ bool belongs(uint slot, uvec2 slots) {
 // its ball was clipped, so that its centre lies elsewhere.
 uint nearest_slot(Rows rows, vec3 x, uint stored, bool clipped, uvec2 slots) {
     uint best = stored;
-    vec3 to_stored = center_trust_of(stored).xyz - x;
+    vec3 to_stored = polynomial_center_trust_at(stored).xyz - x;
     float best_square = clipped ? NO_HIT : dot3(to_stored, to_stored);
     for (uint row = 0u; row < rows.count; ++row) {
         uvec2 range = row_range(rows, row);
         for (uint i = range.x; i < range.y; ++i) {
-            ListedPoint point = listed_point(i);
+            ListedPoint point = listed_point_at(i);
             vec3 y = point.position - x;
             float square = dot3(y, y);
             bool ties = square == best_square;
-            bool nearer = square < best_square || (ties && index_of(point.slot) < index_of(best));
+            bool nearer = square < best_square || (ties && polynomial_index_at(point.slot) < polynomial_index_at(best));
             bool better = nearer && belongs(point.slot, slots);
             best = better ? point.slot : best;
             best_square = better ? square : best_square;
@@ -146,7 +134,7 @@ uint within_reach(uint first, uint end, vec3 x, float inverse_h, uvec2 slots) {
     uint inside = 0u;
     uint count = min(end - first, BATCH);
     for (uint j = 0u; j < count; ++j) {
-        ListedPoint point = listed_point(first + j);
+        ListedPoint point = listed_point_at(first + j);
         vec3 y = (point.position - x) * inverse_h;
         bool counts = dot3(y, y) <= REACH * REACH && belongs(point.slot, slots);
         inside |= counts ? 1u << j : 0u;
@@ -156,7 +144,7 @@ uint within_reach(uint first, uint end, vec3 x, float inverse_h, uvec2 slots) {
 
 // A neighbour's place in units of h, and its weight.
 vec4 neighbor(uint i, vec3 x, float inverse_h, float weight_square) {
-    vec3 y = (listed_point(i).position - x) * inverse_h;
+    vec3 y = (listed_point_at(i).position - x) * inverse_h;
     return vec4(y, exp_negative(-dot3(y, y) * weight_square));
 }
 
@@ -215,8 +203,8 @@ void main() {
     Hit hit = hits[at];
     if (bitfieldExtract(hit.status, 0, HIT_STATUS_BITS) != HIT_PENDING) return;
     Ray ray = load_ray(at);
-    vec4 stored = center_trust_of(ray.hit_slot);
-    uint object = object_of(ray.hit_slot);
+    vec4 stored = polynomial_center_trust_at(ray.hit_slot);
+    uint object = polynomial_object_at(ray.hit_slot);
     uvec2 slots = uvec2(object_at(object).first_slot, object_at(object).slot_count);
     vec3 from_stored = hit.position - stored.xyz;
 

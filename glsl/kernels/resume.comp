@@ -13,14 +13,16 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/rays.glsl"
 #include "levels.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_HITS) readonly buffer Hits { Hit hits[]; };
-layout(std430, binding = WAVE_MARKS) buffer Marks { uint marks[]; };
+layout(std430, binding = HITS) readonly buffer Hits { Hit hits[]; };
+layout(std430, binding = MARKS) buffer Marks { uint marks[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 
 void main() {

@@ -17,60 +17,28 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/rays.glsl"
+#include "stages/wave.glsl"
+#include "stages/film.glsl"
 #include "environment.glsl"
-#include "hits.glsl"
 #include "math.glsl"
 #include "levels.glsl"
 #include "optics.glsl"
 #include "sampler.glsl"
 #include "state.glsl"
-#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
-layout(std430, binding = WAVE_NEXT_PATHS) writeonly buffer NextPaths { Path next_paths[]; };
-layout(std430, binding = WAVE_TALLY) buffer Tally { uint dark_count; uint reflected_count; };
+layout(std430, binding = FILM) buffer Film { FilmPixel film[]; };
+layout(std430, binding = NEXT_PATHS) writeonly buffer NextPaths { Path next_paths[]; };
+layout(std430, binding = TALLY) buffer Tally { uint dark_count; uint reflected_count; };
 layout(push_constant) uniform Push { WaveParams params; };
 #include "path.glsl"
 #include "media.glsl"
 #include "way.glsl"
 #include "film.glsl"
-
-#ifdef QUEUE
-layout(binding = WAVE_SCATTERING) uniform usamplerBuffer scattering_texels; // one value each
-layout(binding = WAVE_NEXT_MARKS) uniform usamplerBuffer next_mark_texels; // two
-layout(binding = WAVE_NEXT) uniform usamplerBuffer next_offset_texels; // one
-
-uint scattering_ray(uint index) {
-    return texelFetch(scattering_texels, int(index)).x;
-}
-
-uvec2 next_marks_of(uint word) {
-    return texelFetch(next_mark_texels, int(word)).xy;
-}
-
-uint next_offset_of(uint word) {
-    return texelFetch(next_offset_texels, int(word)).x;
-}
-#else
-layout(std430, binding = WAVE_SCATTERING) readonly buffer ScatteringRays { uint scattering_rays[]; };
-layout(std430, binding = WAVE_NEXT_MARKS) readonly buffer NextMarks { uvec2 next_marks[]; };
-layout(std430, binding = WAVE_NEXT) readonly buffer NextOffsets { uint next_offsets[]; };
-
-uint scattering_ray(uint index) {
-    return scattering_rays[index];
-}
-
-uvec2 next_marks_of(uint word) {
-    return next_marks[word];
-}
-
-uint next_offset_of(uint word) {
-    return next_offsets[word];
-}
-#endif
 
 // A path after a surface. The object is entered or left where `toggles`.
 void store_path(uint to, uint from, Path path, vec3 throughput, uint channels, bool bounces, bool toggles, uint object,
@@ -148,10 +116,10 @@ void send(Turn turn, Path path, uint channels, uint to) {
 void main() {
     uint index = list_index();
     if (index >= params.ray_count) return;
-    uint at = scattering_ray(index);
+    uint at = scattering_ray_at(index);
     Ray ray = load_ray(at);
     Path path = path_of(at);
-    uint object = object_of(ray.hit_slot);
+    uint object = polynomial_object_at(ray.hit_slot);
     bool is_glass = object_at(object).material == MATERIAL_GLASS;
     vec3 albedo = object_at(object).albedo;
     uint all = path.channels & uint(CHANNELS_ALL);
@@ -162,15 +130,15 @@ void main() {
     }
 
     uint bit = at & 31u, below = (1u << bit) - 1u;
-    uvec2 marks = next_marks_of(at / 32u);
-    uint to = next_offset_of(at / 32u) + uint(bitCount(marks.x & below)) + 2u * uint(bitCount(marks.y & below));
+    uvec2 marks = next_mark_at(at / 32u);
+    uint to = next_offset_at(at / 32u) + uint(bitCount(marks.x & below)) + 2u * uint(bitCount(marks.y & below));
     float chance = 0.0;
     if (scene_has(SCENE_CHANCE)) {
         uvec2 pixel = params.tile_origin + uvec2(path.pixel % params.tile_size.x, path.pixel / params.tile_size.x);
         uint sample_index = params.sample_index == NONE ? 0u : params.sample_index;
         chance = sample_1d(pixel, sample_index, params.seed, uint(SAMPLE_FRESNEL) + path.bounces);
     }
-    Turn turn = Turn(at, ray.direction, hit_of(at), ray.hit_slot, object, is_glass, crossing,
+    Turn turn = Turn(at, ray.direction, hit_at(at), ray.hit_slot, object, is_glass, crossing,
                      path.throughput * (is_glass ? vec3(1.0) : albedo), chance, to, (marks.x >> bit & 1u) != 0u);
     if (scene_has(SCENE_DISPERSES)) {
         bool is_split = is_glass && splits(crossing, all) && !passes(crossing, all);

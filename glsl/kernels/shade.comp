@@ -12,19 +12,20 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/wave.glsl"
+#include "stages/film.glsl"
 #include "math.glsl"
 #include "albedo.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
-layout(std430, binding = WAVE_LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
+layout(std430, binding = FILM) buffer Film { FilmPixel film[]; };
+layout(std430, binding = LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
 layout(push_constant) uniform Push { WaveParams params; };
 #include "film.glsl"
 #include "gather.glsl"
-#include "lit.glsl"
 #include "path.glsl"
 
 #define INVERSE_PI 0.318309886
@@ -32,11 +33,11 @@ layout(push_constant) uniform Push { WaveParams params; };
 void main() {
     uint at = list_index();
     if (at >= params.ray_count) return;
-    uint ray = lit_ray(at);
+    uint ray = lit_ray_at(at);
     Path path = path_of(ray);
-    LitHit hit = lit_hit_of(ray);
+    LitHit hit = lit_hit_at(ray);
     vec3 light = gathered(at, path.pixel);
-    vec3 albedo = albedo_at(object_of(hit.slot), hit.slot, hit.position);
+    vec3 albedo = albedo_at(polynomial_object_at(hit.slot), hit.slot, hit.position);
     vec3 scattered = through_volumes(path, path.throughput * (albedo * (light * INVERSE_PI)));
     write_channels(path.pixel, path.channels, path.emitted + scattered);
 }

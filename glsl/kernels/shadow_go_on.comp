@@ -13,19 +13,21 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/rays.glsl"
+#include "stages/wave.glsl"
+#include "stages/film.glsl"
 #include "math.glsl"
 #include "levels.glsl"
 #include "polynomial.glsl"
 #include "state.glsl"
-#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_LIVE) buffer Live { uint live; uint going; };
-layout(std430, binding = WAVE_MARKS) buffer Marks { uint marks[]; };
-layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
-layout(std430, binding = WAVE_LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
+layout(std430, binding = LIVE) buffer Live { uint live; uint going; };
+layout(std430, binding = MARKS) buffer Marks { uint marks[]; };
+layout(std430, binding = FILM) buffer Film { FilmPixel film[]; };
+layout(std430, binding = LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
 layout(std430, binding = SHADOW_PATHS) buffer ShadowPaths { Path shadow_paths[]; };
 layout(push_constant) uniform Push { ShadowParams params; };
 
@@ -56,7 +58,7 @@ void main() {
         }
         return;
     }
-    uint object = object_of(slot), count = shadow_paths[at].media_count;
+    uint object = polynomial_object_at(slot), count = shadow_paths[at].media_count;
     uint way = way_through_point(slot, ray.origin, ray.direction, ray.hit_t);
     uint place = crossing_of(Media(at, count), object, way).place;
     bool leaves = place < count, enters = place == count && count < MOST_MEDIA;
@@ -67,7 +69,7 @@ void main() {
     shadow_paths[at].crossings += 1u;
 
     if (params.counts != 0u) count_work(shadow_paths[at].pixel, ray.tests, ray.cells);
-    Polynomial p = polynomial_of(slot);
+    Polynomial p = polynomial_at(slot);
     vec3 y, normal;
     surface_at(ray.origin, ray.direction, ray.hit_t, p, y, normal);
     vec3 x = p.center_trust.xyz + y;

@@ -9,20 +9,20 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/wave.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = SHADOW_PATHS) writeonly buffer ShadowPaths { Path shadow_paths[]; };
 layout(push_constant) uniform Push { WaveParams params; };
-#include "lit.glsl"
 #include "path.glsl"
 
 void main() {
     uint at = list_index();
     if (at >= params.ray_count) return;
-    uint ray = lit_ray(at);
+    uint ray = lit_ray_at(at);
     Path path = path_of(ray);
     shadow_paths[at].pixel = path.pixel;
     shadow_paths[at].channels = NONE;

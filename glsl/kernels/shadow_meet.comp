@@ -12,14 +12,15 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/rays.glsl"
+#include "stages/wave.glsl"
 #include "math.glsl"
 #include "state.glsl"
-#include "records.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
+layout(std430, binding = LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
 layout(std430, binding = SHADOW_PATHS) buffer ShadowPaths { Path shadow_paths[]; };
 layout(push_constant) uniform Push { ShadowParams params; };
 
@@ -66,7 +67,7 @@ void main() {
     // Infinitely far away, rays are outside of everything: of a grazing one, the way out was not seen.
     medium = ray.hit_t < NO_HIT ? medium : NONE;
     arriving *= transmittance(medium, ray.hit_t);
-    uint object = found ? object_of(ray.hit_slot) : 0u;
+    uint object = found ? polynomial_object_at(ray.hit_slot) : 0u;
     bool is_glass = found && object_at(object).material == MATERIAL_GLASS;
     bool passes = false;
     if (is_glass) {

@@ -13,7 +13,11 @@
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
 #define STATE_WRITES
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/rays.glsl"
+#include "stages/wave.glsl"
+#include "stages/film.glsl"
 #include "math.glsl"
 #include "levels.glsl"
 #include "light.glsl"
@@ -21,21 +25,20 @@
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = SHADE_LIGHTS) readonly buffer Lights { Light lights[]; };
-layout(std430, binding = SHADE_FILM) buffer Film { FilmPixel film[]; };
-layout(std430, binding = WAVE_LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
-layout(std430, binding = WAVE_TALLY) buffer Tally { uint dark_count; uint reflected_count; };
+layout(std430, binding = LIGHTS) readonly buffer Lights { Light lights[]; };
+layout(std430, binding = FILM) buffer Film { FilmPixel film[]; };
+layout(std430, binding = LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
+layout(std430, binding = TALLY) buffer Tally { uint dark_count; uint reflected_count; };
 layout(push_constant) uniform Push { WaveParams params; };
 #include "film.glsl"
 #include "gather.glsl"
-#include "lit.glsl"
 #include "path.glsl"
 
 void main() {
     uint at = list_index();
     if (at >= params.ray_count) return;
-    uint ray = lit_ray(at);
-    LitHit hit = lit_hit_of(ray);
+    uint ray = lit_ray_at(at);
+    LitHit hit = lit_hit_at(ray);
     uint tile_at = path_of(ray).pixel;
     vec3 sum = vec3(0.0);
     if (scene_has(SCENE_MANY_LIGHTS)) {

@@ -8,15 +8,15 @@
 // twin    crates/reference/src/shape.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
 #include "shape.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = SHAPE_POINTS) readonly buffer Points { Point points[]; };
-layout(std430, binding = SHAPE_RADII) readonly buffer Radii { float radii[]; };
-layout(std430, binding = SHAPE_POLYNOMIALS) writeonly buffer Polynomials { Polynomial polynomials[]; };
-layout(std430, binding = SHAPE_OUTCOMES) writeonly buffer Outcomes { FitOutcome outcomes[]; };
+layout(std430, binding = POINTS) readonly buffer Points { Point points[]; };
+layout(std430, binding = RADII) readonly buffer Radii { float radii[]; };
+layout(std430, binding = POLYNOMIALS) writeonly buffer Polynomials { Polynomial polynomials[]; };
+layout(std430, binding = OUTCOMES) writeonly buffer Outcomes { FitOutcome outcomes[]; };
 layout(push_constant) uniform Push { ShapeParams params; };
 
 void main() {

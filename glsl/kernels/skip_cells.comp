@@ -10,13 +10,14 @@
 // A ray in an empty cell leaves all cells that are nearer at once (grid.glsl).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/grid.glsl"
 #include "skip.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = GRID_INFO) readonly buffer Info { GridInfo grid; };
-layout(std430, binding = GRID_CELLS) writeonly buffer Cells { uvec2 cells[]; };
+layout(std430, binding = CELLS) writeonly buffer Cells { uvec2 cells[]; };
 layout(std430, binding = SKIP_OCCUPIED) readonly buffer Occupied { uint occupied[]; };
 layout(std430, binding = SKIP_BESIDE) readonly buffer Beside { uint beside[]; };
 layout(std430, binding = SKIP_NEAR) readonly buffer Near { uint near[]; };

@@ -9,16 +9,15 @@
 // twin    points::NeighborSearch::smoothed_sizes
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
 #include "math.glsl"
 #include "index.glsl"
 #include "cloud.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-WORDS(SMOOTH_POINTS, points);
-layout(std430, binding = SMOOTH_LISTS) readonly buffer Lists { uint lists[]; };
-layout(std430, binding = SMOOTH_REACHES) buffer Reaches { float reaches[]; };
-layout(std430, binding = SMOOTH_SIZES) writeonly buffer Sizes { float sizes[]; };
+layout(std430, binding = NEIGHBORS) readonly buffer Lists { uint lists[]; };
+layout(std430, binding = REACHES) buffer Reaches { float reaches[]; };
+layout(std430, binding = SIZES) writeonly buffer Sizes { float sizes[]; };
 layout(push_constant) uniform Push { SmoothParams params; };
 
 void main() {
@@ -34,7 +33,7 @@ void main() {
         sum += params.round > 0u ? reaches[last] : 0.0;
         ++count;
     }
-    vec3 way = uintBitsToFloat(words_of(points, last).xyz) - uintBitsToFloat(words_of(points, slot).xyz);
+    vec3 way = point_position_at(last) - point_position_at(slot);
     if (params.round > 0u)
         sizes[slot] = sum / float(count + 1u);
     else

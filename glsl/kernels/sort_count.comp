@@ -6,7 +6,8 @@
 // twin    crates/reference/src/grid_build.rs (a stable sort has but one result)
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/grid.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;

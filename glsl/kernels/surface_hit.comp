@@ -10,15 +10,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
-#define LISTS
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/rays.glsl"
 #include "levels.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
-layout(std430, binding = TRACE_HITS) buffer Hits { Hit hits[]; };
+layout(std430, binding = LIVE) buffer Live { uint live; };
+layout(std430, binding = HITS) buffer Hits { Hit hits[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 #include "meeting.glsl"
 

@@ -9,13 +9,14 @@
 //         hold (tests/cases/tree.rs)
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#define QUEUE // how polynomials are read
-#include "layout.glsl"
+#define TEXELS
+#include "stages/points.glsl"
+#include "stages/search.glsl"
+#include "stages/tree.glsl"
 #include "index.glsl"
 #include "math.glsl"
 #include "node.glsl"
 #ifdef LEAVES
-#include "records.glsl"
 #endif
 #include "tree.glsl"
 
@@ -27,7 +28,7 @@ layout(push_constant) uniform Push { TreeLevelParams params; };
 // The box of the child at `at`, of those of the level below, if anything is inside.
 bool child_box(uint at, out vec3 low, out vec3 high) {
 #ifdef LEAVES
-    Polynomial p = polynomial_of(at);
+    Polynomial p = polynomial_at(at);
     patch_box(p, low, high);
     return p.center_trust.w > 0.0;
 #else

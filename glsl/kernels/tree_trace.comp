@@ -9,21 +9,24 @@
 // runs    one invocation per ray of the wave; dispatched until no ray lives
 // twin    crates/reference/src/grid_trace.rs (hits are those of any structure)
 //
-// What grid_trace finds, to the bit: the nearest hit of all polynomials, or of equals the first. LEAVES as there.
+// What grid_trace finds, to the bit: the nearest hit of all polynomials, or of equals the first. LEAVING as there.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define QUEUE
+#define TEXELS
 #define STATE_READS
 #define STATE_WRITES
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/tree.glsl"
+#include "stages/rays.glsl"
 #include "math.glsl"
 #include "scene.glsl"
 #include "tree_walk.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = TRACE_LIVE) buffer Live { uint live; };
-layout(std430, binding = WAVE_MARKS) buffer Marks { uint marks[]; };
+layout(std430, binding = LIVE) buffer Live { uint live; };
+layout(std430, binding = MARKS) buffer Marks { uint marks[]; };
 layout(std430, binding = LIVE_RAYS) readonly buffer LiveRays { uint live_rays[]; };
 layout(push_constant) uniform Push { TreeTraceParams params; };
 
@@ -34,7 +37,7 @@ void main() {
     Ray ray = load_ray(index);
     TreePlace at = before_root();
     if (params.starts == 0u) {
-        uvec2 more = state_of(index).start.zw;
+        uvec2 more = state_start_at(index).zw;
         at = TreePlace(ray.cell, uvec2(ray.cursor, more.x), more.y);
     }
     bool alive = walk_tree(ray, at, params.tree, params.work, params.any_hit != 0u, params.passed);

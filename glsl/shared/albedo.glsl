@@ -6,15 +6,17 @@
 // not declare polynomials, objects, cells and slots again.
 #ifndef ALBEDO_GLSL
 #define ALBEDO_GLSL
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/grid.glsl"
+#include "stages/wave.glsl"
 #include "blend.glsl"
 #include "image.glsl"
 #include "scene.glsl"
 #include "objects.glsl"
-#define LISTS
 #include "around.glsl"
-#include "records.glsl"
 
-layout(std430, binding = SHADE_COLORS) readonly buffer Colors { float colors[]; };
+layout(std430, binding = COLORS) readonly buffer Colors { float colors[]; };
 
 // Points of a cell that are asked. Two loops over so many stay under what lavapipe allows a dispatch.
 #define MOST_ASKED 2048u
@@ -57,7 +59,7 @@ vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
             uint near = next_around(merge, x, slots);
             while (near != NONE) {
                 vec3 normal;
-                float weight = weight_at(polynomial_of(near), x, normal);
+                float weight = weight_at(polynomial_at(near), x, normal);
                 vec3 value = value_of(object, near);
                 weight = has_none(object, value) ? 0.0 : weight;
                 sum += weight * value;
@@ -71,7 +73,7 @@ vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
         uint holding = 0u;
         for (uint i = 0u; i < count; ++i) {
             uint near = slot_at(first + i);
-            vec4 ball = center_trust_of(near);
+            vec4 ball = polynomial_center_trust_at(near);
             vec3 y = x - ball.xyz;
             bool is_near = near - object.first_slot < object.slot_count && dot3(y, y) < ball.w * ball.w;
             holding |= is_near ? 1u << i : 0u;
@@ -80,7 +82,7 @@ vec3 blended_value(ObjectInfo object, uint slot, vec3 x) {
             uint near = slot_at(first + uint(findLSB(holding)));
             holding &= holding - 1u;
             vec3 normal;
-            float weight = weight_at(polynomial_of(near), x, normal);
+            float weight = weight_at(polynomial_at(near), x, normal);
             vec3 value = value_of(object, near);
             weight = has_none(object, value) ? 0.0 : weight;
             sum += weight * value;

@@ -4,15 +4,17 @@
 // One grid lists them so. Of several, most often only one has any; else their lists are merged.
 #ifndef AROUND_GLSL
 #define AROUND_GLSL
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/grid.glsl"
 #include "levels.glsl"
 #include "math.glsl"
-#include "records.glsl"
 
 #define MOST_LISTED_AROUND 2048u // of each list, and
 #define MOST_MERGED 1024u        // of all: with MOST_LEVELS lists, as many turns as lavapipe allows a dispatch
 
 bool holds(uint slot, vec3 x, uvec2 slots) {
-    vec4 ball = center_trust_of(slot);
+    vec4 ball = polynomial_center_trust_at(slot);
     vec3 y = x - ball.xyz;
     return slot - slots.x < slots.y && dot3(y, y) < ball.w * ball.w;
 }
@@ -25,7 +27,7 @@ uint next_holding(uint next, uint end, vec3 x, uvec2 slots) {
 
 // The list of one of the grids around x: empty where x lies outside, or none of the object's points is listed.
 uvec2 listed_around(uint level, vec3 x, uvec2 slots) {
-    uvec2 range = range_of(cell_around(level, x));
+    uvec2 range = range_at(cell_around(level, x));
     range.y = min(range.y, range.x + MOST_LISTED_AROUND);
     return lists_some(level, slots) && in_box(levels[level].grid, x) ? range : uvec2(0u);
 }
@@ -46,7 +48,7 @@ Around points_around(vec3 x, uvec2 slots) {
             around.range = has ? listed : around.range;
         }
     } else {
-        around.range = range_of(cell_around(0u, x));
+        around.range = range_at(cell_around(0u, x));
     }
     return around;
 }
@@ -75,7 +77,7 @@ uint next_around(inout Merge merge, vec3 x, uvec2 slots) {
     for (uint level = 0u; level < level_count(); ++level) {
         bool more = merge.left > 0u && merge.next[level] < merge.end[level];
         uint candidate = slot_at(more ? merge.next[level] : 0u);
-        uint candidate_index = index_of(candidate);
+        uint candidate_index = polynomial_index_at(candidate);
         bool earlier = more && (slot == NONE || candidate_index < index);
         slot = earlier ? candidate : slot;
         index = earlier ? candidate_index : index;

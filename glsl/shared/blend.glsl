@@ -5,6 +5,7 @@
 // hit at a tenth of the trust radius: what lies farther is another sheet.
 #ifndef BLEND_GLSL
 #define BLEND_GLSL
+#include "stages/points.glsl"
 #include "polynomial.glsl"
 
 #define OTHER_SHEET 0.1 // of the trust radius

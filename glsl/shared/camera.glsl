@@ -4,7 +4,6 @@
 // Whoever includes this has push constants `params` with a camera.
 #ifndef CAMERA_GLSL
 #define CAMERA_GLSL
-#include "layout.glsl"
 #include "math.glsl"
 
 // A place in the picture, `offset` pixels from the centre of a pixel of the full image: at distance 1, if the

@@ -6,9 +6,11 @@
 // projection here by as many; DISTANCE_ERROR is 64 of them, as much as all of both together.
 #ifndef DISC_GLSL
 #define DISC_GLSL
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/search.glsl"
+#include "stages/discs.glsl"
+#include "stages/rays.glsl"
 #include "math.glsl"
-#include "records.glsl"
 
 #define DISC_GROWTH 1.0001     // of the trust radius
 #define DISTANCE_ERROR 4e-6    // of the distance from the eye
@@ -82,7 +84,7 @@ LeafDiscs discs_of_leaf(DiscParams params, uint leaf) {
     float nearest = NO_HIT;
     for (uint i = 0u; i < LEAF_POINTS; ++i) {
         uint slot = leaf * LEAF_POINTS + i;
-        vec4 ball = center_trust_of(slot);
+        vec4 ball = polynomial_center_trust_at(slot);
         vec3 from_eye = ball.xyz - params.camera.eye;
         TileSpan span = disc_tiles(params.camera, from_eye, slot < params.point_count ? ball.w : 0.0);
         float distance = sqrt(dot3(from_eye, from_eye)) - disc_radius(from_eye, ball.w);

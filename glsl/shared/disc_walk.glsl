@@ -9,48 +9,15 @@
 // any four leaves; the cursor says where to go on.
 #ifndef DISC_WALK_GLSL
 #define DISC_WALK_GLSL
+#include "stages/points.glsl"
+#include "stages/search.glsl"
+#include "stages/discs.glsl"
 #include "disc.glsl"
 #ifdef PACKETS
 #include "packet.glsl"
 #endif
 #include "polynomial.glsl"
-#include "records.glsl"
 #include "state.glsl"
-
-#ifdef QUEUE
-layout(binding = DISC_RANGES_IN) uniform usamplerBuffer disc_ranges; // two values a tile
-layout(binding = DISC_KEYS_IN) uniform usamplerBuffer disc_keys; // one each
-layout(binding = DISC_LEAVES_IN) uniform usamplerBuffer disc_leaves; // four
-
-uvec2 disc_range_of(uint tile) {
-    return texelFetch(disc_ranges, int(tile)).xy;
-}
-
-uint disc_key_at(uint place) {
-    return texelFetch(disc_keys, int(place)).x;
-}
-
-uvec4 four_disc_leaves_at(uint place) {
-    return texelFetch(disc_leaves, int(place / 4u));
-}
-#else
-layout(std430, binding = DISC_RANGES_IN) readonly buffer DiscRanges { uvec2 disc_ranges[]; };
-layout(std430, binding = DISC_KEYS_IN) readonly buffer DiscKeys { uint disc_keys[]; };
-layout(std430, binding = DISC_LEAVES_IN) readonly buffer DiscLeaves { uint disc_leaves[]; };
-
-uvec2 disc_range_of(uint tile) {
-    return disc_ranges[tile];
-}
-
-uint disc_key_at(uint place) {
-    return disc_keys[place];
-}
-
-// Those from a multiple of four on; the list has room for four.
-uvec4 four_disc_leaves_at(uint place) {
-    return uvec4(disc_leaves[place], disc_leaves[place + 1u], disc_leaves[place + 2u], disc_leaves[place + 3u]);
-}
-#endif
 
 #define LEAF_MASK ((1u << LEAF_BITS) - 1u)
 #define LEAVES_AT_ONCE 4u // a bit for each of their points
@@ -79,7 +46,7 @@ uint met_by_packet(uint points, uvec4 leaves, Packet packet, vec3 eye) {
     for (uint i = 0u; i < LEAVES_AT_ONCE; ++i) {
         uint shift = LEAF_POINTS * i;
         if (((points >> shift) & 255u) != 0u) {
-            vec4 ball = center_trust_of(slot_of_bit(leaves, shift + packet_lane()));
+            vec4 ball = polynomial_center_trust_at(slot_of_bit(leaves, shift + packet_lane()));
             vec3 from_eye = ball.xyz - eye;
             missed |= packet_ballot(!meets_packet(packet, from_eye, disc_radius(from_eye, ball.w))) << shift;
         }
@@ -102,7 +69,7 @@ void walk_discs(inout Ray ray, uvec2 range, DepthRanks ranks, uint work) {
     bool alive = ray.cell != NONE && next < range.y;
     uint hit_object = NONE, hit_index = NONE;
     if (alive && ray.hit_slot != NONE) {
-        Polynomial hit = polynomial_of(ray.hit_slot);
+        Polynomial hit = polynomial_at(ray.hit_slot);
         hit_object = hit.object;
         hit_index = hit.index;
     }
@@ -114,7 +81,7 @@ void walk_discs(inout Ray ray, uvec2 range, DepthRanks ranks, uint work) {
 #endif
         uint first = next & ~(LEAVES_AT_ONCE - 1u);
         uint end = min(range.y, first + LEAVES_AT_ONCE);
-        uvec4 leaves = four_disc_leaves_at(first);
+        uvec4 leaves = disc_leaf_four_at(first);
         uint asked = listed_points(leaves, first, next, end);
         ray.tests += alive ? uint(bitCount(asked)) : 0u;
 #ifdef PACKETS
@@ -125,13 +92,13 @@ void walk_discs(inout Ray ray, uvec2 range, DepthRanks ranks, uint work) {
         while (asked != 0u) {
             uint bit = uint(findLSB(asked));
             asked &= asked - 1u;
-            bool near = near_trust_ball(o, d, center_trust_of(slot_of_bit(leaves, bit)), ray.hit_t);
+            bool near = near_trust_ball(o, d, polynomial_center_trust_at(slot_of_bit(leaves, bit)), ray.hit_t);
             candidates |= near && alive ? 1u << bit : 0u;
         }
         while (candidates != 0u) {
             uint slot = slot_of_bit(leaves, uint(findLSB(candidates)));
             candidates &= candidates - 1u;
-            Polynomial p = polynomial_of(slot);
+            Polynomial p = polynomial_at(slot);
             float t = intersect(o, d, p, 0.0);
             bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);
             bool nearer = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);

@@ -3,6 +3,8 @@
 // twin  crates/reference/src/environment.rs
 #ifndef ENVIRONMENT_GLSL
 #define ENVIRONMENT_GLSL
+#include "stages/scene.glsl"
+#include "stages/wave.glsl"
 #include "image.glsl"
 #include "math.glsl"
 #include "scene.glsl"

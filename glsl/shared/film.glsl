@@ -6,7 +6,8 @@
 // pixels that show no surface, what is the same for all of them. Whoever includes this has the buffer `film`.
 #ifndef FILM_GLSL
 #define FILM_GLSL
-#include "layout.glsl"
+#include "stages/scene.glsl"
+#include "stages/wave.glsl"
 #include "scene.glsl"
 
 // Whether a path that ends in the background leaves it out of a transparent picture.

@@ -3,7 +3,7 @@
 // twin  crates/reference/src/fit.rs
 #ifndef FIT_GLSL
 #define FIT_GLSL
-#include "layout.glsl"
+#include "stages/points.glsl"
 #include "least_squares.glsl"
 
 #define MAX_SLOPE 1.0     // sqrt(E E + F F)

@@ -4,7 +4,8 @@
 // Whoever includes this has buffers `light_sums` and `film`, and reads the shadow rays' state.
 #ifndef GATHER_GLSL
 #define GATHER_GLSL
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
 #include "scene.glsl"
 #include "state.glsl"
 

@@ -6,7 +6,8 @@
 // and go on in another pass with the same bits.
 #ifndef GRID_GLSL
 #define GRID_GLSL
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/grid.glsl"
 #include "math.glsl"
 
 #define PARALLEL 1e-20     // a direction's component under this never crosses a face

@@ -6,10 +6,10 @@
 // Not through samplers: how those filter and decode differs from driver to driver.
 #ifndef IMAGE_GLSL
 #define IMAGE_GLSL
-#include "layout.glsl"
+#include "stages/wave.glsl"
 
-layout(std430, binding = SHADE_IMAGES) readonly buffer Images { ImageInfo images[]; };
-layout(std430, binding = SHADE_TEXELS) readonly buffer Texels { uint texels[]; };
+layout(std430, binding = IMAGES) readonly buffer Images { ImageInfo images[]; };
+layout(std430, binding = TEXELS_OF_IMAGES) readonly buffer Texels { uint texels[]; };
 
 vec3 texel_of(ImageInfo image, uint column, uint row) {
     uint at = row * image.width + column;

@@ -1,7 +1,7 @@
 // index: which entry of a list, or which pixel of a tile, an invocation works on.
 #ifndef INDEX_GLSL
 #define INDEX_GLSL
-#include "layout.glsl"
+#include "stages/points.glsl"
 
 // Lists longer than one axis of a dispatch may be are spread over rows of LINE_ROW. Not by
 // gl_NumWorkGroups: lavapipe 22.3.6 gives wrong values for it past the first row.

@@ -6,7 +6,7 @@
 // system's bits.
 #ifndef LEAST_SQUARES_GLSL
 #define LEAST_SQUARES_GLSL
-#include "layout.glsl"
+#include "stages/points.glsl"
 
 #define UNKNOWNS 6
 #define SINGULAR_PIVOT 1e-4 // of its diagonal entry

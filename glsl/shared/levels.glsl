@@ -6,10 +6,13 @@
 // nearest hit of those before; whatever lies in the way of a ray is listed in one of them.
 #ifndef LEVELS_GLSL
 #define LEVELS_GLSL
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/grid.glsl"
 #include "grid.glsl"
 #include "scene.glsl"
 
-layout(std430, binding = TRACE_INFO) readonly buffer Info { GridLevel levels[]; };
+layout(std430, binding = LEVELS) readonly buffer Info { GridLevel levels[]; };
 
 uint level_count() {
     return scene_has(SCENE_LEVELS) ? uint(levels.length()) : 1u;

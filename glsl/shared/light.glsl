@@ -6,7 +6,7 @@
 // what it would from a hard one, whichever place is drawn.
 #ifndef LIGHT_GLSL
 #define LIGHT_GLSL
-#include "layout.glsl"
+#include "stages/wave.glsl"
 #include "math.glsl"
 #include "sampler.glsl"
 

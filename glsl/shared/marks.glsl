@@ -3,11 +3,12 @@
 // Whoever includes this reads `params` of a wave.
 #ifndef MARKS_GLSL
 #define MARKS_GLSL
-#include "layout.glsl"
+#include "stages/scene.glsl"
+#include "stages/wave.glsl"
 
-layout(std430, binding = WAVE_LIT) buffer Lit { uint lit[]; };
-layout(std430, binding = WAVE_SCATTERING) buffer Scattering { uint scattering[]; };
-layout(std430, binding = WAVE_NEXT_MARKS) buffer NextMarks { uvec2 next_marks[]; };
+layout(std430, binding = LIT_MARKS) buffer Lit { uint lit[]; };
+layout(std430, binding = SCATTERING_MARKS) buffer Scattering { uint scattering[]; };
+layout(std430, binding = NEXT_MARKS) buffer NextMarks { uvec2 next_marks[]; };
 
 // A hit on a diffuse surface.
 void mark_lit(uint ray) {

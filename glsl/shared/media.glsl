@@ -8,7 +8,9 @@
 // an object of spheres, which is a member once for each sphere that the ray is inside.
 #ifndef MEDIA_GLSL
 #define MEDIA_GLSL
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/wave.glsl"
 #include "math.glsl"
 #include "objects.glsl"
 #include "scene.glsl"

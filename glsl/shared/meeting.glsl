@@ -4,11 +4,14 @@
 // Whoever includes this has the lists of the grids.
 #ifndef MEETING_GLSL
 #define MEETING_GLSL
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/grid.glsl"
+#include "stages/wave.glsl"
 #include "around.glsl"
 #include "blend.glsl"
 #include "objects.glsl"
 #include "polynomial.glsl"
-#include "records.glsl"
 #include "scene.glsl"
 #include "state.glsl"
 
@@ -28,7 +31,7 @@ vec3 blended_normal(vec3 x, vec3 normal, uint object) {
             Merge merge = merge_around(x, slots);
             uint near = next_around(merge, x, slots);
             while (near != NONE) {
-                sum += weighted_normal(polynomial_of(near), x, normal);
+                sum += weighted_normal(polynomial_at(near), x, normal);
                 near = next_around(merge, x, slots);
             }
         }
@@ -37,14 +40,14 @@ vec3 blended_normal(vec3 x, vec3 normal, uint object) {
         uint count = min(end - first, ASKED_AT_ONCE);
         uint holding = 0u;
         for (uint i = 0u; i < count; ++i) {
-            vec4 ball = center_trust_of(slot_at(first + i));
+            vec4 ball = polynomial_center_trust_at(slot_at(first + i));
             vec3 y = x - ball.xyz;
             holding |= dot3(y, y) < ball.w * ball.w ? 1u << i : 0u;
         }
         while (holding != 0u) {
             uint near = slot_at(first + uint(findLSB(holding)));
             holding &= holding - 1u;
-            if (near - slots.x < slots.y) sum += weighted_normal(polynomial_of(near), x, normal);
+            if (near - slots.x < slots.y) sum += weighted_normal(polynomial_at(near), x, normal);
         }
     }
     return normalize3(sum);
@@ -59,7 +62,7 @@ struct Meeting {
 
 // Of a ray that hit something.
 Meeting meeting_of(Ray ray) {
-    Polynomial p = polynomial_of(ray.hit_slot);
+    Polynomial p = polynomial_at(ray.hit_slot);
     vec3 y, normal;
     surface_at(ray.origin, ray.direction, ray.hit_t, p, y, normal);
     bool is_shape = scene_has(SCENE_SHAPES) && is_shape_of(object_at(p.object), ray.hit_slot);

@@ -5,7 +5,8 @@
 // empty. A walk keeps one number: where it is. Every box says where it goes on.
 #ifndef NODE_GLSL
 #define NODE_GLSL
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/search.glsl"
 
 #define NOTHING 3.0e38 // lowest corner of an empty box; minus that, its highest
 

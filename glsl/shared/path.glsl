@@ -5,36 +5,10 @@
 #ifndef PATH_GLSL
 #define PATH_GLSL
 #include "index.glsl"
-#include "layout.glsl"
+#include "stages/scene.glsl"
+#include "stages/wave.glsl"
 #include "math.glsl"
 #include "scene.glsl"
-
-#ifdef QUEUE
-layout(binding = WAVE_PATHS) uniform usamplerBuffer path_texels; // five a path
-
-uint stored_media(uint at, uint word) {
-    return texelFetch(path_texels, int(5u * at + 2u + word / 4u))[word & 3u];
-}
-
-Path stored_path(uint at) {
-    int first = int(5u * at);
-    uvec4 start = texelFetch(path_texels, first), counts = texelFetch(path_texels, first + 1);
-    uvec4 low = texelFetch(path_texels, first + 2), high = texelFetch(path_texels, first + 3);
-    vec4 volumes = uintBitsToFloat(texelFetch(path_texels, first + 4));
-    uint media[MEDIA_WORDS] = uint[](low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w);
-    return Path(uintBitsToFloat(start.xyz), start.w, counts.x, counts.y, counts.z, counts.w, media, volumes.xyz, volumes.w);
-}
-#else
-layout(std430, binding = WAVE_PATHS) readonly buffer Paths { Path paths[]; };
-
-uint stored_media(uint at, uint word) {
-    return paths[at].media[word];
-}
-
-Path stored_path(uint at) {
-    return paths[at];
-}
-#endif
 
 bool shares_path() {
     return (params.flags & uint(WAVE_SHARES_PATH)) != 0u;
@@ -42,12 +16,12 @@ bool shares_path() {
 
 // Two of the path's media, 16 bits each.
 uint media_word(uint ray, uint word) {
-    return stored_media(shares_path() ? 0u : ray, word);
+    return path_media_at(shares_path() ? 0u : ray, word);
 }
 
 // All but the media.
 Path path_of(uint ray) {
-    Path path = stored_path(shares_path() ? 0u : ray);
+    Path path = path_at(shares_path() ? 0u : ray);
     uvec2 pixel = pixel_of_ray(ray, params.tile_size);
     path.pixel = shares_path() ? pixel.y * params.tile_size.x + pixel.x : path.pixel;
     // Without volumes nobody stores these.

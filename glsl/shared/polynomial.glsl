@@ -4,7 +4,7 @@
 // Solved from the ray's nearest approach to the point: from the eye the same formula loses digits.
 #ifndef POLYNOMIAL_GLSL
 #define POLYNOMIAL_GLSL
-#include "layout.glsl"
+#include "stages/points.glsl"
 #include "math.glsl"
 
 vec3 apply_curvature(Polynomial p, vec3 v) {

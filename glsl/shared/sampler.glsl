@@ -7,7 +7,6 @@
 // into each elementary interval of area 2^-k, and no two pixels or dimensions know of each other.
 #ifndef SAMPLER_GLSL
 #define SAMPLER_GLSL
-#include "layout.glsl"
 #include "math.glsl"
 
 // Every bit depends on every bit. Constants of lowbias32 (Wellons, Prospecting for Hash Functions).

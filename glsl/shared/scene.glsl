@@ -2,7 +2,6 @@
 // and so does a GPU where rays differ.
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
-#include "layout.glsl"
 
 layout(constant_id = 0) const uint SCENE = 0xffffffffu;
 

@@ -3,7 +3,7 @@
 // twin  crates/reference/src/shape.rs
 #ifndef SHAPE_GLSL
 #define SHAPE_GLSL
-#include "layout.glsl"
+#include "stages/points.glsl"
 #include "math.glsl"
 
 #define SPHERE_MARGIN 1.00001 // trust radius over radius: rounding puts no place of the sphere outside

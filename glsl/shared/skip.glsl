@@ -1,7 +1,7 @@
 // skip: bits of cells, 32 of a row a word; rows begin with words of their own.
 #ifndef SKIP_GLSL
 #define SKIP_GLSL
-#include "layout.glsl"
+#include "stages/grid.glsl"
 
 uint row_words(GridInfo grid) {
     return (grid.resolution.x + 31u) / 32u;

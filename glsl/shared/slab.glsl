@@ -3,6 +3,7 @@
 // twin  crates/reference/src/grid_build.rs
 #ifndef SLAB_GLSL
 #define SLAB_GLSL
+#include "stages/grid.glsl"
 #include "grid.glsl"
 
 #define SMALL_BALL 64u // cells around a ball that one invocation goes through

@@ -7,7 +7,9 @@
 // flushes or quiets a value on its way.
 #ifndef STATE_GLSL
 #define STATE_GLSL
-#include "layout.glsl"
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/rays.glsl"
 #include "math.glsl"
 #include "scene.glsl"
 
@@ -34,10 +36,10 @@ Ray no_ray() {
 }
 
 #ifdef STATE_READS
-StateRay state_of(uint ray);
+StateRay stored_state(uint ray);
 
 Ray load_ray(uint at) {
-    StateRay ray = state_of(at);
+    StateRay ray = stored_state(at);
     return Ray(uintBitsToFloat(ray.position.xyz), uintBitsToFloat(ray.position.w),
                uintBitsToFloat(ray.direction.xyz), ray.direction.w,
                ray.cell.x, ray.cell.y, ray.cell.z, ray.cell.w, ray.start.x, uintBitsToFloat(ray.start.y),
@@ -47,12 +49,8 @@ Ray load_ray(uint at) {
 
 #ifdef QUEUE
 #ifdef STATE_READS
-layout(binding = STATE_IN) uniform usamplerBuffer state_texels; // four a ray
-
-StateRay state_of(uint ray) {
-    int at = int(4u * ray);
-    return StateRay(texelFetch(state_texels, at), texelFetch(state_texels, at + 1), texelFetch(state_texels, at + 2),
-                    texelFetch(state_texels, at + 3));
+StateRay stored_state(uint ray) {
+    return state_at(ray);
 }
 #endif
 
@@ -82,12 +80,12 @@ ivec2 texel_of(uint ray) {
 }
 
 #ifdef STATE_READS
-layout(rgba32ui, binding = STATE_IN + 0) uniform readonly uimage2D position_in;
-layout(rgba32ui, binding = STATE_IN + 1) uniform readonly uimage2D direction_in;
-layout(rgba32ui, binding = STATE_IN + 2) uniform readonly uimage2D cell_in;
-layout(rgba32ui, binding = STATE_IN + 3) uniform readonly uimage2D start_in;
+layout(rgba32ui, binding = STATE_IN) uniform readonly uimage2D position_in;
+layout(rgba32ui, binding = DIRECTION_IN) uniform readonly uimage2D direction_in;
+layout(rgba32ui, binding = CELL_IN) uniform readonly uimage2D cell_in;
+layout(rgba32ui, binding = START_IN) uniform readonly uimage2D start_in;
 
-StateRay state_of(uint ray) {
+StateRay stored_state(uint ray) {
     ivec2 texel = texel_of(ray);
     return StateRay(imageLoad(position_in, texel), imageLoad(direction_in, texel), imageLoad(cell_in, texel),
                     imageLoad(start_in, texel));
@@ -95,10 +93,10 @@ StateRay state_of(uint ray) {
 #endif
 
 #ifdef STATE_WRITES
-layout(rgba32ui, binding = STATE_OUT + 0) uniform writeonly uimage2D position_out;
-layout(rgba32ui, binding = STATE_OUT + 1) uniform writeonly uimage2D direction_out;
-layout(rgba32ui, binding = STATE_OUT + 2) uniform writeonly uimage2D cell_out;
-layout(rgba32ui, binding = STATE_OUT + 3) uniform writeonly uimage2D start_out;
+layout(rgba32ui, binding = STATE_OUT) uniform writeonly uimage2D position_out;
+layout(rgba32ui, binding = DIRECTION_OUT) uniform writeonly uimage2D direction_out;
+layout(rgba32ui, binding = CELL_OUT) uniform writeonly uimage2D cell_out;
+layout(rgba32ui, binding = START_OUT) uniform writeonly uimage2D start_out;
 
 void store_ray(uint at, Ray ray) {
     ivec2 texel = texel_of(at);

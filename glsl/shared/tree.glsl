@@ -12,7 +12,7 @@
 //   words 10 - 15  the same of the others
 #ifndef TREE_GLSL
 #define TREE_GLSL
-#include "layout.glsl"
+#include "stages/points.glsl"
 #include "math.glsl"
 
 #define TREE_STEPS 255.0

@@ -7,15 +7,17 @@
 // lanes that have found some wait for others no longer than that.
 #ifndef TREE_WALK_GLSL
 #define TREE_WALK_GLSL
+#include "stages/points.glsl"
+#include "stages/scene.glsl"
+#include "stages/search.glsl"
+#include "stages/tree.glsl"
+#include "stages/rays.glsl"
 #include "math.glsl"
 #include "polynomial.glsl"
-#include "records.glsl"
 #include "scene.glsl"
 #include "shape.glsl"
 #include "state.glsl"
 #include "tree.glsl"
-
-layout(binding = TRACE_NODES) uniform usamplerBuffer node_texels; // four a node
 
 #define NODES_AT_ONCE 8u
 #define PARALLEL_INVERSE 1e-20 // of a direction: what is less never arrives
@@ -46,9 +48,9 @@ uint met_four(uvec3 low, uvec3 high, vec3 size, vec3 enters, vec3 leaves, float 
 // The children of the node in memory whose boxes the ray meets no farther than `nearest`, a bit each; in bit 8, whether
 // it is to visit the last first. `inverse` is one over d.
 uint met_children(uint node, vec3 o, vec3 d, vec3 inverse, float nearest) {
-    int at = int(4u * node);
-    uvec4 frame = texelFetch(node_texels, at);
-    uvec4 a = texelFetch(node_texels, at + 1), b = texelFetch(node_texels, at + 2), c = texelFetch(node_texels, at + 3);
+    uint at = 4u * node;
+    uvec4 frame = node_part_at(at);
+    uvec4 a = node_part_at(at + 1u), b = node_part_at(at + 2u), c = node_part_at(at + 3u);
     vec3 size = (256.0 * uintBitsToFloat((frame.w & 255u) << 23)) * inverse;
     vec3 begin = (uintBitsToFloat(frame.xyz) - o) * inverse;
     vec3 margin = TREE_ROUNDING * (abs(begin) + abs(size));
@@ -73,7 +75,7 @@ TreePlace before_root() {
     return TreePlace(0u, uvec2(1u, 0u), 0u); // the root is the first child of what would be above it
 }
 
-// Goes on with a ray from where it is; whether it has not ended. With LEAVES it starts on a surface, whose own sheet it
+// Goes on with a ray from where it is; whether it has not ended. With LEAVING it starts on a surface, whose own sheet it
 // does not meet again at once, and ends at `any_hit`, if so; an object is `passed`.
 bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, bool any_hit, uint passed) {
     vec3 o = ray.origin, d = ray.direction;
@@ -83,16 +85,16 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
     bool alive = ray.cell != NONE;
     uint hit_object = NONE, hit_index = NONE;
     if (alive && ray.hit_slot != NONE) {
-        Polynomial hit = polynomial_of(ray.hit_slot);
+        Polynomial hit = polynomial_at(ray.hit_slot);
         hit_object = hit.object;
         hit_index = hit.index;
     }
-#ifdef LEAVES
+#ifdef LEAVING
     // The sheet that the ray starts on.
     vec3 left_normal = vec3(0.0);
     uint left_object = NONE;
     if (alive && ray.left != NONE) {
-        Polynomial left = polynomial_of(ray.left);
+        Polynomial left = polynomial_at(ray.left);
         left_normal = normal_at(left, o);
         left_object = left.object;
     }
@@ -141,8 +143,8 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
             set1 = done ? set2 : set1;
             set2 = done ? set3 : set2;
             set3 = done ? 0u : set3;
-            Polynomial p = polynomial_of(slot);
-#ifdef LEAVES
+            Polynomial p = polynomial_at(slot);
+#ifdef LEAVING
             bool own = p.object == left_object && same_sheet(p, o, left_normal);
             float from = own ? SHEET_REACH * p.center_trust.w : 0.0;
             if (scene_has(SCENE_VOLUMES) && scene_has(SCENE_CLEAR)) {
@@ -156,7 +158,7 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
             // The test of all lists: from far away, what `intersect` says of a ball's rim is a matter of rounding.
             bool near = near_trust_ball(o, d, p.center_trust, ray.hit_t);
             float t = near ? intersect(o, d, p, from) : NO_HIT;
-#ifdef LEAVES
+#ifdef LEAVING
             if (scene_has(SCENE_SPHERES)) {
                 bool is_left = near && slot == ray.left && is_sphere(p.gradient_offset.xyz);
                 t = is_left ? far_side(o, d, p.center_trust.xyz) : t;
@@ -176,7 +178,7 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
         ray.cells += NODES_AT_ONCE - looks;
         work_left -= min(work_left, solved + (NODES_AT_ONCE - looks) + 2u);
         alive = (pending.x | pending.y) != 0u;
-#ifdef LEAVES
+#ifdef LEAVING
         alive = alive && !(any_hit && ray.hit_slot != NONE);
 #endif
     }

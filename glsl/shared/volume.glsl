@@ -3,81 +3,27 @@
 // twin  crates/reference/src/volume.rs
 #ifndef VOLUME_GLSL
 #define VOLUME_GLSL
-#include "layout.glsl"
+#include "stages/scene.glsl"
+#include "stages/volume.glsl"
 #include "math.glsl"
 #include "grid.glsl"
 #include "scene.glsl"
 
-layout(std430, binding = MARCH_VOLUMES) readonly buffer Volumes { VolumeInfo volumes[]; };
-
-// With QUEUE through uniform texel buffers (records.glsl says why). Both give the same bits.
-#ifdef QUEUE
-layout(binding = MARCH_CELLS) uniform usamplerBuffer volume_cell_texels; // two values each
-layout(binding = MARCH_POINTS) uniform usamplerBuffer volume_point_texels; // four
-layout(binding = MARCH_LENGTHS) uniform usamplerBuffer length_texels; // one
-layout(binding = MARCH_STOPS) uniform usamplerBuffer stop_texels; // four
-#define STOP_TEXELS 6u
-
-VolumeCell volume_cell(uint at) {
-    uvec2 words = texelFetch(volume_cell_texels, int(at)).xy;
-    return VolumeCell(words.x, words.y);
-}
-
-VolumePoint volume_point(uint at) {
-    vec4 words = uintBitsToFloat(texelFetch(volume_point_texels, int(at)));
-    return VolumePoint(words.xyz, words.w);
-}
-
-float inverse_length_of(uint at) {
-    return uintBitsToFloat(texelFetch(length_texels, int(at)).x);
-}
+layout(std430, binding = VOLUMES) readonly buffer Volumes { VolumeInfo volumes[]; };
 
 vec4 color_of_stop(uint at) {
-    return uintBitsToFloat(texelFetch(stop_texels, int(STOP_TEXELS * at)));
+    return vec4(stop_color_at(at), stop_extinction_at(at));
 }
 
-// The value, and the emission there.
-vec4 value_of_stop(uint at) {
-    return uintBitsToFloat(texelFetch(stop_texels, int(STOP_TEXELS * at) + 1));
+vec3 emission_of_stop(uint at) {
+    return vec3(stop_emission_at(at, 0u), stop_emission_at(at, 1u), stop_emission_at(at, 2u));
 }
 
 // One of the integrals from the first stop to this one: 2 and 3, 4 and 5 add up.
 vec4 integral_to(uint at, uint which) {
-    return uintBitsToFloat(texelFetch(stop_texels, int(STOP_TEXELS * at + which)));
+    vec4 scattering = which == 2u ? stop_scattering_integral_at(at) : stop_scattering_rest_at(at);
+    return which < 4u ? scattering : (which == 4u ? stop_emission_integral_at(at) : stop_emission_rest_at(at));
 }
-#else
-layout(std430, binding = MARCH_CELLS) readonly buffer VolumeCells { VolumeCell volume_cells[]; };
-layout(std430, binding = MARCH_POINTS) readonly buffer VolumePoints { VolumePoint volume_points[]; };
-layout(std430, binding = MARCH_LENGTHS) readonly buffer Lengths { float inverse_lengths[]; };
-layout(std430, binding = MARCH_STOPS) readonly buffer Stops { VolumeStop stops[]; };
-
-VolumeCell volume_cell(uint at) {
-    return volume_cells[at];
-}
-
-VolumePoint volume_point(uint at) {
-    return volume_points[at];
-}
-
-float inverse_length_of(uint at) {
-    return inverse_lengths[at];
-}
-
-vec4 color_of_stop(uint at) {
-    return vec4(stops[at].color, stops[at].extinction);
-}
-
-vec4 value_of_stop(uint at) {
-    VolumeStop stop = stops[at];
-    return vec4(stop.value, stop.emission[0], stop.emission[1], stop.emission[2]);
-}
-
-vec4 integral_to(uint at, uint which) {
-    VolumeStop stop = stops[at];
-    vec4 scattering = which == 2u ? stop.scattering_integral : stop.scattering_rest;
-    return which < 4u ? scattering : (which == 4u ? stop.emission_integral : stop.emission_rest);
-}
-#endif
 
 // Where a ray is within a box: x > y, nowhere.
 vec2 within_box(vec3 low, vec3 high, vec3 o, vec3 d) {
@@ -103,7 +49,7 @@ uvec2 row_points(VolumeInfo volume, uvec3 low, uvec3 high, uint row, vec3 x, flo
     uint first_x = clamp(uint(max(at.x - half_chord, 0.0)), low.x, high.x);
     uint last_x = clamp(uint(max(at.x + half_chord, 0.0)), first_x, high.x);
     uint row_first = volume.first_cell + cell_id(volume.grid, uvec3(0u, yz));
-    uvec2 range = uvec2(volume_cell(row_first + first_x).first, volume_cell(row_first + last_x + 1u).first);
+    uvec2 range = uvec2(volume_cell_at(row_first + first_x).first, volume_cell_at(row_first + last_x + 1u).first);
     return square >= 0.0 ? range : uvec2(0u);
 }
 
@@ -123,7 +69,7 @@ FourPoints four_points(uint first, uint end, vec3 x) {
 #define POINT_OF_FOUR(i) { \
     four.are_there[i] = first + i <= last; \
     four.at[i] = min(first + i, last); \
-    VolumePoint point = volume_point(four.at[i]); \
+    VolumePoint point = volume_point_at(four.at[i]); \
     four.y[i] = point.position - x; \
     four.scalars[i] = point.scalar; \
     four.squares[i] = dot3(four.y[i], four.y[i]); \
@@ -158,8 +104,8 @@ vec4 spline(vec4 q) {
 }
 
 vec4 inverse_lengths_of(FourPoints four) {
-    return vec4(inverse_length_of(four.at[0]), inverse_length_of(four.at[1]), inverse_length_of(four.at[2]),
-                inverse_length_of(four.at[3]));
+    return vec4(inverse_length_at(four.at[0]), inverse_length_at(four.at[1]), inverse_length_at(four.at[2]),
+                inverse_length_at(four.at[3]));
 }
 
 vec4 splines(FourPoints four, vec4 inverse_lengths) {
@@ -195,7 +141,7 @@ uint piece_of(VolumeInfo volume, float scalar, uint known) {
     uint low = known, high = volume.stop_count;
     while (low < high) {
         uint middle = (low + high) / 2u;
-        bool above = value_of_stop(volume.first_stop + middle).x > scalar;
+        bool above = stop_value_at(volume.first_stop + middle) > scalar;
         high = above ? middle : high;
         low = above ? low : middle + 1u;
     }
@@ -207,8 +153,8 @@ uint piece_of(VolumeInfo volume, float scalar, uint known) {
 Shown mean_within(VolumeInfo volume, uint piece, float a, float b) {
     uint low = volume.first_stop + max(piece, 1u) - 1u;
     uint high = volume.first_stop + min(piece, volume.stop_count - 1u);
-    float value_low = value_of_stop(low).x;
-    float span = value_of_stop(high).x - value_low;
+    float value_low = stop_value_at(low);
+    float span = stop_value_at(high) - value_low;
     float divisor = span > 0.0 ? span : 1.0;
     float from = span > 0.0 ? min(max((a - value_low) / divisor, 0.0), 1.0) : 0.0;
     float to = span > 0.0 ? min(max((b - value_low) / divisor, 0.0), 1.0) : 0.0;
@@ -222,8 +168,8 @@ Shown mean_within(VolumeInfo volume, uint piece, float a, float b) {
     uint glows = scene_has(SCENE_GLOWS) ? volume.slot : 0u; // most do not, and need no more texels
     while (glows > 0u) {
         glows = 0u;
-        vec3 emission_low = value_of_stop(low).yzw;
-        emission = emission_low + middle * (value_of_stop(high).yzw - emission_low);
+        vec3 emission_low = emission_of_stop(low);
+        emission = emission_low + middle * (emission_of_stop(high) - emission_low);
     }
     return Shown(vec4(scattering, color.w), emission);
 }
@@ -234,7 +180,7 @@ Shown mean_of(VolumeInfo volume, float a, float b) {
     float low = min(a, b), high = max(a, b);
     uint piece = piece_of(volume, low, 0u);
     uint first = volume.first_stop + min(piece, volume.stop_count - 1u); // the first stop above the lower scalar
-    float stop = value_of_stop(first).x;
+    float stop = stop_value_at(first);
     bool several = piece < volume.stop_count && stop <= high;
     float end = several ? stop : high;
     Shown mean = mean_within(volume, piece, low, end);
@@ -243,7 +189,7 @@ Shown mean_of(VolumeInfo volume, float a, float b) {
         --others;
         uint upper_piece = piece_of(volume, high, piece + 1u);
         uint last = volume.first_stop + upper_piece - 1u; // the last stop not above the higher one
-        float begin = value_of_stop(last).x;
+        float begin = stop_value_at(last);
         Shown upper = mean_within(volume, upper_piece, begin, high);
         float lower_part = end - low, upper_part = high - begin, inverse = 1.0 / (high - low);
         vec4 scattering = (integral_to(last, 2u) - integral_to(first, 2u)) + (integral_to(last, 3u) - integral_to(first, 3u));

@@ -1,12 +1,13 @@
 //! Pipelines that are made ahead are those that a build and a picture ask for.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use gpu::Kernel;
 use harness::{Bench, fibonacci_sphere, moved, plan_of, set_of, with_attribute};
-use points::device::kernels_of_fits;
+use points::device::modules_of_fits;
 use points::{PointSet, Unwatched};
 use render::Renderer;
 use std::collections::HashSet;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Held by the one test that has a device.
 static TURN: Mutex<()> = Mutex::new(());
@@ -17,7 +18,7 @@ const LIT: &str = "[[lights]]\nkind = \"directional\"\ndirection = [-0.4, -1.0, 
 /// Renders with what is likely made ahead, on a device of its own; how many pipelines that did not foresee, and the
 /// kernels that ran.
 fn unforeseen(text: &str, sets: &[PointSet]) -> (usize, HashSet<&'static str>) {
-    let plan = plan_of(text, sets);
+    let plan = Arc::new(plan_of(text, sets));
     let planes = plan.shapes.iter().filter_map(plan::Shapes::plane_fit);
     let mut fitted = plan.fits.iter().copied().chain(planes).filter(|fit| fit.point_count > 0);
     let neighbors = fitted.next().map_or(0, |fit| fit.neighbors);
@@ -28,16 +29,18 @@ fn unforeseen(text: &str, sets: &[PointSet]) -> (usize, HashSet<&'static str>) {
         assert!(is_new || !device.info().name.contains("llvmpipe"), "a device of its own");
         let fits = match neighbors {
             0 => Vec::new(),
-            _ => kernels_of_fits(device, neighbors).expect("kernels"),
+            _ => modules_of_fits(device, neighbors),
         };
+        let kernel = |module| Kernel::new(device, module, None).expect("a kernel");
+        let fits: Vec<Kernel> = fits.into_iter().map(kernel).collect();
         let others = Renderer::likely_kernels(device, &plan).expect("kernels");
-        let likely: HashSet<_> = fits.iter().chain(&others).map(gpu::Kernel::name).collect();
+        let likely: HashSet<_> = fits.iter().chain(&others).map(Kernel::name).collect();
         for kernel in fits.iter().chain(&others) {
             kernel.make_ahead().expect("a pipeline");
         }
         let made = device.pipeline_count();
         let mut renderer = Renderer::new(device, &plan, &Unwatched).expect("builds");
-        let (_, stats) = renderer.frame(&plan, &Unwatched).expect("renders");
+        let (_, stats) = renderer.frame(&Unwatched).expect("renders");
         let of_build = renderer.surfaces().kernels.iter();
         let ran: HashSet<_> = of_build.chain(&stats.kernels).map(|kernel| kernel.0).collect();
         // What nothing runs would be made for nothing.

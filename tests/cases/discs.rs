@@ -160,8 +160,10 @@ fn screen_tiles_list_what_the_twin_lists() {
         let twin = reference.bin_discs(&plan, &plan.tiles()[0]).expect("not too many pairs");
         let mut tiles = vec![[0; 2]; twin.tiles.len()];
         let (ranks, pairs) = bench.with_device(|device| {
-            let mut renderer = Renderer::new(device, &plan, &Unwatched).expect("builds");
-            renderer.frame(&plan, &Unwatched).expect("renders");
+            let mut renderer =
+                Renderer::new(device, &std::sync::Arc::new(plan.clone()), &Unwatched)
+                    .expect("builds");
+            renderer.frame(&Unwatched).expect("renders");
             let lists = renderer.disc_lists().expect("a tile traced by discs");
             lists.tiles.read(0, &mut tiles).expect("tiles");
             let mut pairs = [0; 2].map(|_| vec![0; lists.pair_count as usize]);

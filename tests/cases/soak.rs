@@ -167,11 +167,11 @@ fn with_a_device(folder: &Path, first: usize, validation: bool) -> usize {
 /// From a scene file to a picture, which is removed; `false` where patience ran out.
 fn render(device: &Arc<Device>, folder: &Path, name: &str, patience: i32) -> bool {
     let scene = Scene::load(&folder.join(format!("{name}.toml")), &[]).expect("a scene");
-    let plan = plan_of_scene(&scene);
+    let plan = Arc::new(plan_of_scene(&scene));
     let watch = Impatient(AtomicI32::new(patience));
     let watch: &dyn Watch = if patience == i32::MAX { &Unwatched } else { &watch };
     let rendered =
-        Renderer::new(device, &plan, watch).and_then(|mut renderer| renderer.frame(&plan, watch));
+        Renderer::new(device, &plan, watch).and_then(|mut renderer| renderer.frame(watch));
     match rendered {
         Ok((picture, _)) => {
             let out = folder.join("out.exr");

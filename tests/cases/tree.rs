@@ -152,7 +152,8 @@ fn child_box(node: &[u32; 16], child: usize) -> Option<[[f64; 3]; 2]> {
 /// Polynomials and the tree's nodes of a plan.
 fn built(bench: &Bench, plan: &Plan) -> (Vec<Polynomial>, Vec<[u32; 16]>, TreeInfo) {
     bench.with_device(|device| {
-        let renderer = Renderer::new(device, plan, &Unwatched).expect("builds");
+        let renderer =
+            Renderer::new(device, &std::sync::Arc::new(plan.clone()), &Unwatched).expect("builds");
         let surfaces = renderer.surfaces();
         let tree = surfaces.tree.as_ref().expect("a tree");
         let mut nodes = vec![[0u32; 16]; tree.node_count() as usize];

@@ -110,11 +110,11 @@ impl Bench {
 }
 
 fn rendered(device: &Arc<Device>, plan: &Plan, work: Option<u32>) -> Rendered {
-    let mut renderer = Renderer::new(device, plan, &Unwatched).expect("builds");
+    let mut renderer = Renderer::new(device, &Arc::new(plan.clone()), &Unwatched).expect("builds");
     if let Some(work) = work {
         renderer.set_budget(work);
     }
-    let (picture, stats) = renderer.frame(plan, &Unwatched).expect("renders");
+    let (picture, stats) = renderer.frame(&Unwatched).expect("renders");
     let surfaces = renderer.surfaces();
     let mut polynomials =
         vec![<layout::Polynomial as bytemuck::Zeroable>::zeroed(); plan.cloud.points.len()];

@@ -67,7 +67,12 @@ impl Ahead {
         neighbors.sort_unstable();
         neighbors.dedup();
         for count in neighbors {
-            self.add(|device| Ok(points::device::kernels_of_fits(device, count)?));
+            self.add(|device| {
+                let modules = points::device::modules_of_fits(device, count).into_iter();
+                Ok(modules
+                    .map(|module| Kernel::new(device, module, None))
+                    .collect::<Result<_, _>>()?)
+            });
         }
     }
 

@@ -61,6 +61,7 @@ pub enum Engine {
 
 /// A plan's surfaces on its engine.
 pub struct Built {
+    plan: Arc<Plan>,
     surfaces: BuiltOn,
     /// How long that took.
     pub duration: Duration,
@@ -178,7 +179,7 @@ impl Engine {
     }
 
     /// Fits the surfaces and builds the grid.
-    pub fn build(&self, plan: &Plan, progress: &Progress) -> Result<Built, Failure> {
+    pub fn build(&self, plan: &Arc<Plan>, progress: &Progress) -> Result<Built, Failure> {
         let started = Instant::now();
         let pipelines = self.pipeline_time();
         let surfaces = interrupt::held(|| {
@@ -190,6 +191,7 @@ impl Engine {
         });
         progress.clear();
         Ok(Built {
+            plan: Arc::clone(plan),
             surfaces: surfaces?,
             duration: started.elapsed(),
             pipelines: self.pipeline_time().saturating_sub(pipelines),
@@ -206,17 +208,18 @@ impl Engine {
 
 impl Built {
     /// Traces one picture.
-    pub fn frame(&mut self, plan: &Plan, progress: &Progress) -> Result<Frame, Failure> {
-        let frame = interrupt::held(|| self.traced(plan, progress));
+    pub fn frame(&mut self, progress: &Progress) -> Result<Frame, Failure> {
+        let frame = interrupt::held(|| self.traced(progress));
         progress.clear();
         frame
     }
 
-    fn traced(&mut self, plan: &Plan, progress: &Progress) -> Result<Frame, Failure> {
+    fn traced(&mut self, progress: &Progress) -> Result<Frame, Failure> {
+        let plan: &Plan = &self.plan;
         let started = Instant::now();
         match &mut self.surfaces {
             BuiltOn::Gpu(renderer) => {
-                let (picture, stats) = renderer.frame(plan, progress)?;
+                let (picture, stats) = renderer.frame(progress)?;
                 Ok(Frame {
                     hits: picture.hits,
                     tests: picture.tests,

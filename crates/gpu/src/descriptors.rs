@@ -108,7 +108,7 @@ impl Descriptors {
         layout: vk::DescriptorSetLayout,
     ) -> Result<vk::DescriptorSet, GpuError> {
         let layouts = [layout];
-        let failed = GpuError::call("vkAllocateDescriptorSets", kernel.name);
+        let failed = GpuError::call("vkAllocateDescriptorSets", kernel.source().name);
         loop {
             let is_new = self.open_pool == self.pools.len();
             if is_new {
@@ -136,7 +136,7 @@ impl Descriptors {
 
     /// A pool with room for `kernel`'s set, and for many of the usual size.
     fn new_pool(&self, kernel: &KernelInner) -> Result<vk::DescriptorPool, GpuError> {
-        let count = POOL_DESCRIPTORS.max(kernel.slots.len() as u32);
+        let count = POOL_DESCRIPTORS.max(kernel.source().slots.len() as u32);
         let of_kind = |kind: Binding| {
             vk::DescriptorPoolSize::default().ty(kind.descriptor_type()).descriptor_count(count)
         };
@@ -159,7 +159,7 @@ impl Descriptors {
         kernel: &KernelInner,
         bound: &[Bound],
     ) -> Result<(), GpuError> {
-        for (slot, bound) in kernel.slots.iter().zip(bound) {
+        for (slot, bound) in kernel.source().slots.iter().zip(bound) {
             let write = vk::WriteDescriptorSet::default()
                 .dst_set(set)
                 .dst_binding(slot.binding)

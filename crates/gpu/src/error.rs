@@ -151,6 +151,28 @@ pub enum GpuError {
         /// The limit.
         limit: u32,
     },
+    /// A pass lacks what its kernel uses, or is given what does not fit: a fault of this program.
+    #[error("pass '{pass}': {binding} {reason}; please report it")]
+    Binding {
+        /// The kernel.
+        pass: &'static str,
+        /// By name and number.
+        binding: String,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+    /// A pass has other push constants than its kernel: a fault of this program.
+    #[error(
+        "pass '{pass}': {pushed} bytes of push constants, and the kernel has {expected}; please report it"
+    )]
+    PushConstants {
+        /// The kernel.
+        pass: &'static str,
+        /// Bytes that were given.
+        pushed: usize,
+        /// Bytes that it has.
+        expected: usize,
+    },
     /// A module is not one this crate can run.
     #[error("kernel '{kernel}' is not a usable SPIR-V module: {reason}; rebuild the kernels")]
     BadModule {

@@ -1,17 +1,19 @@
-//! Compute pipelines.
-//!
-//! The list of bindings a kernel is made with is checked against its module, so a binding number
-//! that moved on one side fails at once and by name, not as a black picture.
+//! Compute kernels: what a module says of its bindings and push constants, and its pipeline.
 
 use crate::access::Access;
 use crate::device::Device;
 use crate::error::GpuError;
 use crate::next_id;
 use crate::pipelines::{Pipeline, PipelineKey};
-use crate::spirv::{Module, ResourceKind};
+use crate::spirv::{Reflection, ResourceKind};
 use ash::vk;
+use kernels::layout;
+use kernels::spirv::Module;
+use std::borrow::Cow;
+use std::collections::HashMap;
 use std::fmt;
-use std::sync::{Arc, OnceLock};
+use std::hash::{Hash, Hasher};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
 /// What a kernel expects at a binding.
@@ -22,7 +24,7 @@ pub enum Binding {
     /// An [`Image`](crate::Image) as `image2D` or `uimage2D`.
     StorageImage,
     /// A [`Buffer`](crate::Buffer) as `samplerBuffer`, `isamplerBuffer` or `usamplerBuffer`, with
-    /// texels of so many values of 4 bytes. Which of the three is read from the module.
+    /// texels of so many values of 4 bytes.
     UniformTexelBuffer(Texel),
 }
 
@@ -67,79 +69,120 @@ pub struct Kernel {
 pub(crate) struct KernelInner {
     pipeline: OnceLock<Pipeline>,
     key: Arc<PipelineKey>,
-    pub(crate) name: &'static str,
     pub(crate) id: u64,
-    pub(crate) group_size: [u32; 3],
-    pub(crate) push_bytes: usize,
-    pub(crate) slots: Vec<Slot>,
     device: Arc<Device>,
 }
 
-/// One binding, as the list and the module agree on it.
+/// A module as it was read, once a run.
+#[derive(Debug)]
+pub(crate) struct Source {
+    id: u64,
+    pub(crate) name: &'static str,
+    pub(crate) words: Cow<'static, [u32]>,
+    pub(crate) module: Reflection,
+    pub(crate) slots: Vec<Slot>,
+}
+
+impl PartialEq for Source {
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+}
+
+impl Eq for Source {}
+
+impl Hash for Source {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.id.hash(state);
+    }
+}
+
+/// One binding of a module.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Slot {
     pub(crate) binding: u32,
     pub(crate) kind: Binding,
-    /// Meaningless for storage buffers and where the module does not use the binding.
+    /// Meaningless for storage buffers.
     pub(crate) texel: TexelType,
     pub(crate) access: Access,
-    pub(crate) is_in_module: bool,
+}
+
+impl Source {
+    fn new(
+        name: &'static str,
+        words: Cow<'static, [u32]>,
+        texel: impl Fn(u32) -> Option<Texel>,
+    ) -> Result<Self, GpuError> {
+        let bad = |reason| GpuError::BadModule { kernel: name, reason };
+        let module = Reflection::read(&words).map_err(bad)?;
+        let slots = slots(&module, texel).map_err(bad)?;
+        Ok(Self { id: next_id(), name, words, module, slots })
+    }
+
+    /// Of one of the project's modules; read when it is first asked for.
+    fn of(module: &'static Module) -> Result<Arc<Self>, GpuError> {
+        static READ: Mutex<Option<HashMap<&'static str, Arc<Source>>>> = Mutex::new(None);
+        let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+        let read = read.get_or_insert_default();
+        if let Some(found) = read.get(module.name()) {
+            return Ok(Arc::clone(found));
+        }
+        let words = Cow::Borrowed(module.words());
+        let texel = |number| match layout::binding(number)?.texel {
+            1 => Some(Texel::One),
+            2 => Some(Texel::Two),
+            4 => Some(Texel::Four),
+            _ => None,
+        };
+        let source = Arc::new(Self::new(module.kernel(), words, texel)?);
+        read.insert(module.name(), Arc::clone(&source));
+        Ok(source)
+    }
 }
 
 impl Kernel {
-    /// A kernel of a valid SPIR-V module with one compute entry point. What the driver finds wrong with it
-    /// is an error of the submission that first uses it.
+    /// A kernel of one of the project's modules. Where that has a specialization constant 0, an integer of 32 bits,
+    /// `constant` is its value, and code that it rules out is not compiled; without one the module's own counts. What
+    /// the driver finds wrong is an error of the submission that first uses it.
     ///
-    /// All bindings are in set 0. One that the module does not use may be listed all the same.
-    ///
-    /// # Panics
-    /// Where `bindings` lists a number twice, or lacks or contradicts one of the module's; where
-    /// `push_bytes` is not a multiple of four.
+    /// # Errors
+    /// A device whose limits it is over.
     pub fn new(
         device: &Arc<Device>,
-        name: &'static str,
-        spirv: &[u32],
-        bindings: &[(u32, Binding)],
-        push_bytes: usize,
-    ) -> Result<Self, GpuError> {
-        Self::specialized(device, name, spirv, bindings, push_bytes, None)
-    }
-
-    /// The same with a value for the module's specialization constant 0, an integer of 32 bits. Code that it
-    /// rules out is not compiled. Without a value, the module's own counts.
-    ///
-    /// # Panics
-    /// As [`Kernel::new`].
-    pub fn specialized(
-        device: &Arc<Device>,
-        name: &'static str,
-        spirv: &[u32],
-        bindings: &[(u32, Binding)],
-        push_bytes: usize,
+        module: &'static Module,
         constant: Option<u32>,
     ) -> Result<Self, GpuError> {
-        assert!(push_bytes.is_multiple_of(4), "kernel '{name}': {push_bytes} push constant bytes");
-        let module =
-            Module::read(spirv).map_err(|reason| GpuError::BadModule { kernel: name, reason })?;
-        let slots = slots(name, bindings, &module);
-        check_limits(device, name, &module, &slots, push_bytes)?;
+        Self::of_source(device, Source::of(module)?, constant)
+    }
 
-        let key = PipelineKey {
-            name,
-            spirv: spirv.to_vec(),
-            entry: module.entry,
-            bindings: bindings.to_vec(),
-            push_bytes,
-            constant,
-        };
+    /// A kernel of any module, all of whose texel buffers have texels of so many values.
+    ///
+    /// # Errors
+    /// Words that are no module of one compute kernel with all bindings in set 0; a device whose limits it is over.
+    ///
+    /// # Safety
+    /// The words are valid SPIR-V for a Vulkan 1.1 device with the features that [`Device::open`] turns on.
+    pub unsafe fn of_words(
+        device: &Arc<Device>,
+        name: &'static str,
+        words: Vec<u32>,
+        texel: Texel,
+    ) -> Result<Self, GpuError> {
+        let source = Source::new(name, Cow::Owned(words), |_| Some(texel))?;
+        Self::of_source(device, Arc::new(source), None)
+    }
+
+    fn of_source(
+        device: &Arc<Device>,
+        source: Arc<Source>,
+        constant: Option<u32>,
+    ) -> Result<Self, GpuError> {
+        check_limits(device, &source)?;
+        let constant = constant.filter(|_| source.module.is_specialized);
         let inner = KernelInner {
             pipeline: OnceLock::new(),
-            key: Arc::new(key),
-            name,
+            key: Arc::new(PipelineKey { source, constant }),
             id: next_id(),
-            group_size: module.group_size,
-            push_bytes,
-            slots,
             device: Arc::clone(device),
         };
         Ok(Self { inner: Arc::new(inner) })
@@ -147,7 +190,7 @@ impl Kernel {
 
     /// Invocations of one workgroup, as the module has them.
     pub fn group_size(&self) -> [u32; 3] {
-        self.inner.group_size
+        self.inner.source().module.group_size
     }
 
     /// Makes its pipeline, if there is none yet, so that no pass has to wait for it. Meant for another thread than
@@ -162,7 +205,7 @@ impl Kernel {
 
     /// Its name in messages.
     pub fn name(&self) -> &'static str {
-        self.inner.name
+        self.inner.source().name
     }
 }
 
@@ -170,13 +213,18 @@ impl fmt::Debug for Kernel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { inner } = self;
         f.debug_struct("Kernel")
-            .field("name", &inner.name)
-            .field("group_size", &inner.group_size)
+            .field("name", &inner.source().name)
+            .field("group_size", &inner.source().module.group_size)
             .finish_non_exhaustive()
     }
 }
 
 impl KernelInner {
+    /// Its module.
+    pub(crate) fn source(&self) -> &Source {
+        &self.key.source
+    }
+
     /// The device it belongs to.
     pub(crate) fn device(&self) -> &Arc<Device> {
         &self.device
@@ -221,52 +269,48 @@ impl TexelType {
     }
 }
 
-/// The listed bindings with what the module says of them.
-fn slots(name: &str, bindings: &[(u32, Binding)], module: &Module) -> Vec<Slot> {
-    let mut slots: Vec<Slot> = Vec::with_capacity(bindings.len());
-    for &(binding, kind) in bindings {
-        let is_new = slots.iter().all(|slot| slot.binding != binding);
-        assert!(is_new, "kernel '{name}': binding {binding} is listed twice");
-        let (texel, access) = (TexelType::Float, Access::Read);
-        slots.push(Slot { binding, kind, texel, access, is_in_module: false });
-    }
+/// The bindings of a module. `texel` says how many values a texel has, which is not in the module.
+fn slots(module: &Reflection, texel: impl Fn(u32) -> Option<Texel>) -> Result<Vec<Slot>, String> {
+    let mut slots: Vec<Slot> = Vec::with_capacity(module.resources.len());
     for resource in &module.resources {
         let binding = resource.binding;
-        assert_eq!(resource.set, 0, "kernel '{name}': set of binding {binding}");
-        let slot = slots.iter_mut().find(|slot| slot.binding == binding);
-        assert!(slot.is_some(), "kernel '{name}': binding {binding} is not listed");
-        let Some(slot) = slot else { continue };
-        let (kind, texel) = match (resource.kind, slot.kind) {
-            (ResourceKind::StorageBuffer, _) => (Some(Binding::StorageBuffer), slot.texel),
-            (ResourceKind::StorageImage(texel), _) => (Some(Binding::StorageImage), texel),
-            // How many values a texel has is not in the module.
-            (ResourceKind::UniformTexelBuffer(texel), Binding::UniformTexelBuffer(_)) => {
-                (Some(slot.kind), texel)
+        if resource.set != 0 {
+            return Err(format!("{} is in set {}, not 0", name_of(binding), resource.set));
+        }
+        let no_texels = || format!("{} is read as texels, and has none", name_of(binding));
+        let (kind, of_texel) = match resource.kind {
+            ResourceKind::StorageBuffer => (Binding::StorageBuffer, TexelType::Float),
+            ResourceKind::StorageImage(texel) => (Binding::StorageImage, texel),
+            ResourceKind::UniformTexelBuffer(value) => {
+                (Binding::UniformTexelBuffer(texel(binding).ok_or_else(no_texels)?), value)
             }
-            (ResourceKind::UniformTexelBuffer(_) | ResourceKind::Other, _) => (None, slot.texel),
+            ResourceKind::Other => {
+                return Err(format!("{} is neither a buffer nor an image", name_of(binding)));
+            }
         };
-        assert_eq!(
-            kind,
-            Some(slot.kind),
-            "kernel '{name}': binding {binding} in the module, and in the list"
-        );
-        slot.texel = texel;
-        slot.is_in_module = true;
-        if resource.access == Access::Write {
+        let access = resource.access;
+        match slots.iter_mut().find(|slot| slot.binding == binding) {
             // Two variables may share a binding; one that writes is enough.
-            slot.access = Access::Write;
+            Some(slot) if slot.kind == kind => {
+                slot.access = if access == Access::Write { access } else { slot.access };
+            }
+            Some(_) => return Err(format!("{} is of two kinds", name_of(binding))),
+            None => slots.push(Slot { binding, kind, texel: of_texel, access }),
         }
     }
-    slots
+    Ok(slots)
 }
 
-fn check_limits(
-    device: &Device,
-    kernel: &'static str,
-    module: &Module,
-    slots: &[Slot],
-    push_bytes: usize,
-) -> Result<(), GpuError> {
+/// Of a binding, for messages.
+pub(crate) fn name_of(binding: u32) -> String {
+    let known = layout::binding(binding);
+    known
+        .map_or_else(|| format!("binding {binding}"), |known| format!("{} ({binding})", known.name))
+}
+
+fn check_limits(device: &Device, source: &Source) -> Result<(), GpuError> {
+    let Source { name: kernel, module, slots, .. } = source;
+    let push_bytes = module.push_bytes;
     let limits = &device.vk_limits;
     let count = |kind| slots.iter().filter(|slot| slot.kind == kind).count() as u32;
     let buffers = count(Binding::StorageBuffer);

@@ -1,6 +1,6 @@
 //! Pointillist's Vulkan layer: devices, buffers, images, kernels and the recorder.
 //!
-//! All `unsafe` of the project is in this crate, behind an interface that has none. Four rules
+//! All `unsafe` of the project is in this crate, behind an interface that has none but for [`Kernel::of_words`]. Four rules
 //! make its arguments short:
 //!
 //! * every object holds an `Arc` of its [`Device`], and a device an `Arc` of its [`Instance`], so
@@ -12,7 +12,8 @@
 //! * devices are opened with `robustBufferAccess`, so an index out of range in a kernel reads or
 //!   writes nothing outside its buffer.
 //!
-//! What remains on trust is the SPIR-V itself: [`Kernel::new`] expects a valid module.
+//! SPIR-V is trusted where it is a module of the crate `kernels`, which has no others than its own; for any other
+//! there is [`Kernel::of_words`], which is unsafe.
 //!
 //! Any Vulkan 1.1 device with a compute queue will do. The loader is opened at run time: without
 //! one, [`Instance::new`] fails with [`GpuError::NoLoader`] and says what to install.
@@ -26,6 +27,7 @@ mod error;
 mod image;
 mod instance;
 mod kernel;
+mod pass;
 mod pipelines;
 pub mod process;
 mod queue;
@@ -39,8 +41,9 @@ pub use device::{Device, Limits};
 pub use error::GpuError;
 pub use image::{Image, ImageFormat};
 pub use instance::{Instance, InstanceOptions};
-pub use kernel::{Binding, Kernel, Texel};
-pub use recorder::{PART_ALIGNMENT, PassBuilder, Recorder, Timings};
+pub use kernel::{Kernel, Texel};
+pub use pass::{Bindings, PART_ALIGNMENT, PassBuilder};
+pub use recorder::{Recorder, Timings};
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -3,10 +3,9 @@
 
 use crate::device::Device;
 use crate::error::GpuError;
-use crate::kernel::Binding;
+use crate::kernel::Source;
 use ash::vk;
 use std::collections::HashMap;
-use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// All pipelines of a device.
@@ -21,11 +20,7 @@ type Made = Arc<Mutex<Option<Pipeline>>>;
 /// What a pipeline is made from.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) struct PipelineKey {
-    pub(crate) name: &'static str,
-    pub(crate) spirv: Vec<u32>,
-    pub(crate) entry: CString,
-    pub(crate) bindings: Vec<(u32, Binding)>,
-    pub(crate) push_bytes: usize,
+    pub(crate) source: Arc<Source>,
     /// Of the specialization constant 0, where the module has one.
     pub(crate) constant: Option<u32>,
 }
@@ -83,40 +78,42 @@ fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Pipeline {
     fn create(&mut self, device: &Device, key: &PipelineKey) -> Result<(), GpuError> {
         let raw = &device.raw;
-        let bindings: Vec<_> = (key.bindings.iter())
-            .map(|&(binding, kind)| {
+        let Source { name, words, module, slots, .. } = &*key.source;
+        let bindings: Vec<_> = (slots.iter())
+            .map(|slot| {
                 vk::DescriptorSetLayoutBinding::default()
-                    .binding(binding)
-                    .descriptor_type(kind.descriptor_type())
+                    .binding(slot.binding)
+                    .descriptor_type(slot.kind.descriptor_type())
                     .descriptor_count(1)
                     .stage_flags(vk::ShaderStageFlags::COMPUTE)
             })
             .collect();
         let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-        // SAFETY: the binding numbers differ, as `Kernel::new` asserts, and their count is in range.
+        // SAFETY: the binding numbers differ, as `slots` sees to, and their count is in range.
         self.set_layout = unsafe { raw.create_descriptor_set_layout(&info, None) }
-            .map_err(GpuError::call("vkCreateDescriptorSetLayout", key.name))?;
-        device.set_name(self.set_layout, key.name);
+            .map_err(GpuError::call("vkCreateDescriptorSetLayout", name))?;
+        device.set_name(self.set_layout, name);
 
         let set_layouts = [self.set_layout];
         let push = [vk::PushConstantRange::default()
             .stage_flags(vk::ShaderStageFlags::COMPUTE)
-            .size(key.push_bytes as u32)];
+            .size(module.push_bytes as u32)];
         // A range may not be empty.
-        let push = if key.push_bytes == 0 { &[] } else { &push[..] };
+        let push = if module.push_bytes == 0 { &[] } else { &push[..] };
         let info = vk::PipelineLayoutCreateInfo::default()
             .set_layouts(&set_layouts)
             .push_constant_ranges(push);
         // SAFETY: the set layout was just made, and the push constants are within the limit.
         self.layout = unsafe { raw.create_pipeline_layout(&info, None) }
-            .map_err(GpuError::call("vkCreatePipelineLayout", key.name))?;
-        device.set_name(self.layout, key.name);
+            .map_err(GpuError::call("vkCreatePipelineLayout", name))?;
+        device.set_name(self.layout, name);
 
-        let info = vk::ShaderModuleCreateInfo::default().code(&key.spirv);
-        // SAFETY: the caller of `Kernel::new` gives a valid module, whose head was read.
+        let info = vk::ShaderModuleCreateInfo::default().code(words);
+        // SAFETY: the module is valid: one of those that `kernels` was built with, or as the caller of `of_words`
+        // promises.
         let shader = unsafe { raw.create_shader_module(&info, None) }
-            .map_err(GpuError::call("vkCreateShaderModule", key.name))?;
-        device.set_name(shader, key.name);
+            .map_err(GpuError::call("vkCreateShaderModule", name))?;
+        device.set_name(shader, name);
         let constant = key.constant.unwrap_or_default().to_ne_bytes();
         let entries = [vk::SpecializationMapEntry::default().size(constant.len())];
         let specialization =
@@ -124,7 +121,7 @@ impl Pipeline {
         let stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
             .module(shader)
-            .name(&key.entry);
+            .name(&module.entry);
         let stage = match key.constant {
             Some(_) => stage.specialization_info(&specialization),
             None => stage,
@@ -137,11 +134,11 @@ impl Pipeline {
             raw.destroy_shader_module(shader, None);
             created
         };
-        let failed = GpuError::call("vkCreateComputePipelines", key.name);
+        let failed = GpuError::call("vkCreateComputePipelines", name);
         let pipelines = created.map_err(|(_, result)| failed(result))?;
         let pipeline = pipelines.first().copied();
         self.raw = pipeline.ok_or_else(|| failed(vk::Result::ERROR_UNKNOWN))?;
-        device.set_name(self.raw, key.name);
+        device.set_name(self.raw, name);
         Ok(())
     }
 

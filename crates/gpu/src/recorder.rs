@@ -10,25 +10,20 @@
 
 use crate::access::{self, Access, Hazards};
 use crate::buffer::Buffer;
-use crate::descriptors::{Bound, Descriptors};
+use crate::descriptors::Descriptors;
 use crate::device::Device;
 use crate::error::GpuError;
 use crate::image::{Image, ImageFormat};
-use crate::kernel::{Binding, Kernel, TexelType};
+use crate::kernel::Kernel;
+use crate::pass::PassBuilder;
 use crate::queue;
 use crate::timer::Timer;
 use ash::vk;
-use bytemuck::NoUninit;
+use kernels::spirv::Module;
 use std::any::Any;
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
-
-/// What the offset of a part of a storage buffer must be a multiple of, on any device.
-pub const PART_ALIGNMENT: u64 = 256;
-
-/// Bytes of the three workgroup counts of an indirect dispatch.
-const INDIRECT_BYTES: u64 = 12;
 
 /// GPU time of the passes of one submission.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -42,24 +37,27 @@ pub struct Timings {
 /// Records compute passes, fills and copies, and runs them.
 pub struct Recorder {
     pool: vk::CommandPool,
-    commands: vk::CommandBuffer,
+    pub(crate) commands: vk::CommandBuffer,
     fence: vk::Fence,
     is_recording: bool,
     /// The first thing that went wrong since the last submission.
     error: Option<GpuError>,
     /// Passes recorded.
-    names: Vec<&'static str>,
+    pub(crate) names: Vec<&'static str>,
     hazards: Hazards,
     /// What the recording uses, by id.
-    held: HashMap<u64, Arc<dyn Any + Send + Sync>>,
-    descriptors: Descriptors,
-    timer: Timer,
+    pub(crate) held: HashMap<u64, Arc<dyn Any + Send + Sync>>,
+    pub(crate) descriptors: Descriptors,
+    pub(crate) timer: Timer,
     /// Memory of passes under construction, kept for the next.
-    push: Vec<u8>,
-    uses: Vec<(u64, Access)>,
+    pub(crate) push: Vec<u8>,
+    pub(crate) uses: Vec<(u64, Access)>,
+    /// Kernels that passes have asked for, by module and constant.
+    kernels: HashMap<(&'static str, Option<u32>), Kernel>,
+    constant: Option<u32>,
     #[cfg(test)]
     skip_barriers: bool,
-    device: Arc<Device>,
+    pub(crate) device: Arc<Device>,
 }
 
 impl Recorder {
@@ -79,6 +77,8 @@ impl Recorder {
             timer: Timer::new(device),
             push: Vec::new(),
             uses: Vec::new(),
+            kernels: HashMap::new(),
+            constant: None,
             #[cfg(test)]
             skip_barriers: false,
             device: Arc::clone(device),
@@ -100,12 +100,48 @@ impl Recorder {
         self.timer.turn(on);
     }
 
-    /// Begins a pass: bind what the kernel needs, then dispatch. `name` is its debug label and
-    /// its row in the timings.
-    pub fn pass<'a>(&'a mut self, name: &'static str, kernel: &'a Kernel) -> PassBuilder<'a> {
-        self.assert_same_device(kernel.inner.device(), name);
-        self.push.clear();
-        PassBuilder { bound: vec![None; kernel.inner.slots.len()], recorder: self, kernel, name }
+    /// Kernels of the project's modules are specialized by this value from now on, where their modules have a constant 0.
+    pub fn specialize(&mut self, constant: u32) {
+        self.constant = Some(constant);
+    }
+
+    /// Begins a pass of one of the project's modules: bind what it needs, then dispatch. The kernel's name is the pass's
+    /// debug label and its row in the timings.
+    pub fn pass(&mut self, module: &'static Module) -> PassBuilder<'_> {
+        self.pass_specialized(module, self.constant)
+    }
+
+    /// The same with a value of the specialization constant for this pass only.
+    pub fn pass_specialized(
+        &mut self,
+        module: &'static Module,
+        constant: Option<u32>,
+    ) -> PassBuilder<'_> {
+        let kernel = match self.kernels.get(&(module.name(), constant)) {
+            Some(kernel) => Some(kernel.clone()),
+            None => match Kernel::new(&self.device, module, constant) {
+                Ok(kernel) => {
+                    self.kernels.insert((module.name(), constant), kernel.clone());
+                    Some(kernel)
+                }
+                Err(error) => {
+                    self.fail(error);
+                    None
+                }
+            },
+        };
+        PassBuilder::new(self, kernel)
+    }
+
+    /// Begins a pass of any kernel.
+    pub fn pass_of(&mut self, kernel: &Kernel) -> PassBuilder<'_> {
+        self.assert_same_device(kernel.inner.device(), kernel.name());
+        PassBuilder::new(self, Some(kernel.clone()))
+    }
+
+    /// Keeps what went wrong, if nothing did before.
+    pub(crate) fn fail(&mut self, error: GpuError) {
+        self.error.get_or_insert(error);
     }
 
     /// Fills a range of a buffer with copies of `value`.
@@ -260,7 +296,7 @@ impl Recorder {
 
     /// Runs `commands` with the command buffer in the recording state, unless something went
     /// wrong before, and keeps what goes wrong now.
-    fn record(&mut self, commands: impl FnOnce(&mut Self) -> Result<(), GpuError>) {
+    pub(crate) fn record(&mut self, commands: impl FnOnce(&mut Self) -> Result<(), GpuError>) {
         if self.error.is_none() {
             self.error = self.begin().and_then(|()| commands(self)).err();
         }
@@ -286,7 +322,7 @@ impl Recorder {
     }
 
     /// Records the barrier that the next command needs, if it needs one.
-    fn order(&mut self, uses: &[(u64, Access)]) {
+    pub(crate) fn order(&mut self, uses: &[(u64, Access)]) {
         let needs_barrier = self.hazards.command(uses);
         #[cfg(test)]
         let needs_barrier = needs_barrier && !self.skip_barriers;
@@ -296,11 +332,11 @@ impl Recorder {
         }
     }
 
-    fn hold_buffer(&mut self, buffer: &Buffer) {
+    pub(crate) fn hold_buffer(&mut self, buffer: &Buffer) {
         self.held.entry(buffer.id()).or_insert_with(|| Arc::clone(&buffer.inner) as _);
     }
 
-    fn assert_same_device(&self, device: &Arc<Device>, object: &str) {
+    pub(crate) fn assert_same_device(&self, device: &Arc<Device>, object: &str) {
         assert!(Arc::ptr_eq(&self.device, device), "'{object}' and the recorder: two devices");
     }
 }
@@ -320,222 +356,6 @@ impl Drop for Recorder {
             raw.destroy_fence(self.fence, None);
             raw.destroy_command_pool(self.pool, None);
         }
-    }
-}
-
-/// A pass under construction. Nothing is recorded until one of the `dispatch` calls.
-#[must_use = "a pass is recorded by its dispatch"]
-#[derive(Debug)]
-pub struct PassBuilder<'a> {
-    recorder: &'a mut Recorder,
-    kernel: &'a Kernel,
-    name: &'static str,
-    /// One for each slot of the kernel.
-    bound: Vec<Option<Bound>>,
-}
-
-/// How many workgroups run.
-enum Groups<'a> {
-    Direct([u32; 3]),
-    Indirect(&'a Buffer, u64),
-}
-
-impl PassBuilder<'_> {
-    /// Binds a buffer, as storage or as texels, whichever the kernel's list says.
-    ///
-    /// # Panics
-    /// Where the kernel has no such binding, an image there, or the binding is taken.
-    pub fn buffer(self, binding: u32, buffer: &Buffer) -> Self {
-        self.buffer_part(binding, buffer, 0, buffer.bytes())
-    }
-
-    /// Binds a part of a buffer as storage. Its offset is a multiple of [`PART_ALIGNMENT`].
-    ///
-    /// # Panics
-    /// As [`buffer`](Self::buffer), and where the part leaves the buffer, begins at another offset, or is not
-    /// the whole and the kernel reads texels.
-    pub fn buffer_part(mut self, binding: u32, buffer: &Buffer, offset: u64, bytes: u64) -> Self {
-        self.recorder.assert_same_device(buffer.inner.device(), buffer.name());
-        let slot = self.slot(binding);
-        let kind = self.kernel.inner.slots[slot].kind;
-        let is_buffer = kind != Binding::StorageImage;
-        assert!(is_buffer, "pass '{}': binding {binding} is an image", self.name);
-        buffer.inner.assert_in_range("binding", offset, bytes);
-        assert!(
-            offset.is_multiple_of(PART_ALIGNMENT) && bytes > 0,
-            "pass '{}': a part of {bytes} bytes of buffer '{}' at {offset}",
-            self.name,
-            buffer.name()
-        );
-        if matches!(kind, Binding::UniformTexelBuffer(_)) {
-            assert!(bytes == buffer.bytes(), "pass '{}': texels are bound as a whole", self.name);
-        } else {
-            let limit = self.recorder.device.limits().max_storage_buffer_range;
-            if bytes > limit {
-                let error = GpuError::BufferTooLarge { name: buffer.name(), needed: bytes, limit };
-                self.recorder.error.get_or_insert(error);
-            }
-        }
-        self.bound[slot] = Some(Bound::Buffer(buffer.clone(), [offset, bytes]));
-        self
-    }
-
-    /// Binds an image.
-    ///
-    /// # Panics
-    /// Where the kernel has no such binding, a buffer there or an image of another format, or the
-    /// binding is taken.
-    pub fn image(mut self, binding: u32, image: &Image) -> Self {
-        self.recorder.assert_same_device(image.inner.device(), image.name());
-        let slot = self.slot(binding);
-        let expected = &self.kernel.inner.slots[slot];
-        let is_image = expected.kind == Binding::StorageImage;
-        assert!(is_image, "pass '{}': binding {binding} is a buffer", self.name);
-        let texel = match image.format() {
-            ImageFormat::Rgba32Uint => TexelType::Uint,
-            ImageFormat::Rgba32Float => TexelType::Float,
-        };
-        assert!(
-            !expected.is_in_module || expected.texel == texel,
-            "pass '{}': binding {binding} has pixels of {:?}, image '{}' of {texel:?}",
-            self.name,
-            expected.texel,
-            image.name()
-        );
-        self.bound[slot] = Some(Bound::Image(image.clone()));
-        self
-    }
-
-    /// Sets the push constants.
-    pub fn push<T: NoUninit>(self, value: &T) -> Self {
-        self.recorder.push.clear();
-        self.recorder.push.extend_from_slice(bytemuck::bytes_of(value));
-        self
-    }
-
-    /// Records the pass with at least this many invocations along each axis, rounded up to whole
-    /// workgroups: the kernel ignores those beyond the edge. With none along an axis it records
-    /// nothing.
-    ///
-    /// # Panics
-    /// Where a binding of the kernel is missing, or the push constants have another size.
-    pub fn dispatch(self, invocations: [u32; 3]) {
-        self.assert_complete();
-        let limits = self.recorder.device.limits().max_compute_workgroup_count;
-        let mut groups = [0; 3];
-        for (axis, letter) in ['x', 'y', 'z'].into_iter().enumerate() {
-            groups[axis] = invocations[axis].div_ceil(self.kernel.inner.group_size[axis]);
-            let (pass, groups, limit) = (self.name, groups[axis], limits[axis]);
-            if groups > limit {
-                let error = GpuError::DispatchTooLarge { pass, axis: letter, groups, limit };
-                self.recorder.error.get_or_insert(error);
-                return;
-            }
-        }
-        if !groups.contains(&0) {
-            self.record(Groups::Direct(groups));
-        }
-    }
-
-    /// Records the pass with the three workgroup counts (not invocations) that the buffer holds
-    /// at `offset` when the pass runs. Nothing checks them against the device's limit.
-    ///
-    /// # Panics
-    /// As [`dispatch`](Self::dispatch), and where the counts are not inside the buffer on a
-    /// whole word.
-    pub fn dispatch_indirect(self, counts: &Buffer, offset: u64) {
-        self.assert_complete();
-        self.recorder.assert_same_device(counts.inner.device(), counts.name());
-        counts.inner.assert_in_range("indirect dispatch", offset, INDIRECT_BYTES);
-        assert!(offset.is_multiple_of(4), "pass '{}': indirect counts at {offset}", self.name);
-        self.record(Groups::Indirect(counts, offset));
-    }
-
-    /// The slot of a binding, which must be free.
-    fn slot(&self, binding: u32) -> usize {
-        let slots = &self.kernel.inner.slots;
-        let slot = slots.iter().position(|slot| slot.binding == binding).unwrap_or(slots.len());
-        assert!(slot < slots.len(), "pass '{}': no binding {binding} in its kernel", self.name);
-        assert!(self.bound[slot].is_none(), "pass '{}': binding {binding} bound twice", self.name);
-        slot
-    }
-
-    fn assert_complete(&self) {
-        let Self { name, kernel, .. } = self;
-        for (slot, bound) in kernel.inner.slots.iter().zip(&self.bound) {
-            assert!(bound.is_some(), "pass '{name}': binding {} is missing", slot.binding);
-        }
-        let (pushed, expected) = (self.recorder.push.len(), kernel.inner.push_bytes);
-        assert_eq!(pushed, expected, "pass '{name}': bytes of push constants");
-    }
-
-    fn record(self, groups: Groups<'_>) {
-        let Self { recorder, kernel, name, bound } = self;
-        let bound: Vec<Bound> = bound.into_iter().flatten().collect();
-        recorder.record(|this| this.record_pass(name, kernel, &bound, groups));
-    }
-}
-
-impl Recorder {
-    fn record_pass(
-        &mut self,
-        name: &'static str,
-        kernel: &Kernel,
-        bound: &[Bound],
-        groups: Groups<'_>,
-    ) -> Result<(), GpuError> {
-        let kernel = &kernel.inner;
-        let pipeline = kernel.pipeline()?;
-        let set = self.descriptors.set(kernel, pipeline.set_layout, bound)?;
-        self.held.entry(kernel.id).or_insert_with(|| Arc::clone(kernel) as _);
-        let mut uses = std::mem::take(&mut self.uses);
-        uses.clear();
-        for (slot, bound) in kernel.slots.iter().zip(bound) {
-            uses.push((bound.id(), slot.access));
-            self.held.entry(bound.id()).or_insert_with(|| match bound {
-                Bound::Buffer(buffer, _) => Arc::clone(&buffer.inner) as _,
-                Bound::Image(image) => Arc::clone(&image.inner) as _,
-            });
-        }
-        if let Groups::Indirect(counts, _) = groups {
-            self.hold_buffer(counts);
-            uses.push((counts.id(), Access::Read));
-        }
-        self.order(&uses);
-        self.uses = uses;
-
-        let (raw, commands) = (&self.device.raw, self.commands);
-        // SAFETY: called from within `record`, so the command buffer has been begun. Kernel, set
-        // and resources are of this device and held; the set was made for the kernel's layout;
-        // the push constants have the layout's size; the counts are within the device's limits,
-        // or in a buffer of at least their length.
-        unsafe {
-            self.device.begin_label(commands, name);
-            self.timer.begin(commands)?;
-            raw.cmd_bind_pipeline(commands, vk::PipelineBindPoint::COMPUTE, pipeline.raw);
-            raw.cmd_bind_descriptor_sets(
-                commands,
-                vk::PipelineBindPoint::COMPUTE,
-                pipeline.layout,
-                0,
-                &[set],
-                &[],
-            );
-            if !self.push.is_empty() {
-                let stage = vk::ShaderStageFlags::COMPUTE;
-                raw.cmd_push_constants(commands, pipeline.layout, stage, 0, &self.push);
-            }
-            match groups {
-                Groups::Direct([x, y, z]) => raw.cmd_dispatch(commands, x, y, z),
-                Groups::Indirect(counts, offset) => {
-                    raw.cmd_dispatch_indirect(commands, counts.inner.raw, offset);
-                }
-            }
-            self.timer.end(commands)?;
-            self.device.end_label(commands);
-        }
-        self.names.push(name);
-        Ok(())
     }
 }
 

@@ -1,7 +1,6 @@
-//! What a SPIR-V module says about itself: entry point, workgroup size, bindings.
+//! What a SPIR-V module says about itself: entry point, workgroup size, bindings, push constants.
 //!
-//! Reads just enough to check a kernel's list of bindings against its module, to round a dispatch
-//! up to workgroups, and to know which bindings are only read, which is what keeps barriers away
+//! Reads just enough to bind what a kernel uses, to round a dispatch up to workgroups, and to know which bindings are only read, which is what keeps barriers away
 //! between passes that share their input. It is no validator.
 
 use crate::access::Access;
@@ -11,13 +10,17 @@ use std::ffi::CString;
 
 /// What was found in a module.
 #[derive(Debug)]
-pub(crate) struct Module {
+pub(crate) struct Reflection {
     /// Name of the one compute entry point.
     pub(crate) entry: CString,
     /// Invocations of a workgroup.
     pub(crate) group_size: [u32; 3],
     /// Its resources, in the order of their declarations.
     pub(crate) resources: Vec<Resource>,
+    /// Bytes of its push constants.
+    pub(crate) push_bytes: usize,
+    /// Whether it has a specialization constant 0.
+    pub(crate) is_specialized: bool,
 }
 
 /// One variable with a binding.
@@ -45,6 +48,9 @@ mod op {
     pub(super) const TYPE_FLOAT: u16 = 22;
     pub(super) const TYPE_IMAGE: u16 = 25;
     pub(super) const TYPE_SAMPLED_IMAGE: u16 = 27;
+    pub(super) const TYPE_VECTOR: u16 = 23;
+    pub(super) const TYPE_ARRAY: u16 = 28;
+    pub(super) const CONSTANT: u16 = 43;
     pub(super) const TYPE_STRUCT: u16 = 30;
     pub(super) const TYPE_POINTER: u16 = 32;
     pub(super) const SPEC_CONSTANT_COMPOSITE: u16 = 51;
@@ -54,7 +60,10 @@ mod op {
 }
 
 mod decoration {
+    pub(super) const SPEC_ID: u32 = 1;
     pub(super) const BUFFER_BLOCK: u32 = 3;
+    pub(super) const ARRAY_STRIDE: u32 = 6;
+    pub(super) const OFFSET: u32 = 35;
     pub(super) const BUILT_IN: u32 = 11;
     pub(super) const NON_WRITABLE: u32 = 24;
     pub(super) const BINDING: u32 = 33;
@@ -68,6 +77,7 @@ const MODE_LOCAL_SIZE: u32 = 17;
 const BUILT_IN_WORKGROUP_SIZE: u32 = 25;
 const STORAGE_UNIFORM_CONSTANT: u32 = 0;
 const STORAGE_UNIFORM: u32 = 2;
+const STORAGE_PUSH_CONSTANT: u32 = 9;
 const STORAGE_STORAGE_BUFFER: u32 = 12;
 const DIM_2D: u32 = 1;
 const DIM_BUFFER: u32 = 5;
@@ -79,7 +89,15 @@ const IMAGE_STORAGE: u32 = 2;
 struct Declarations {
     scalars: HashMap<u32, TexelType>,
     images: HashMap<u32, ResourceKind>,
-    struct_members: HashMap<u32, u32>,
+    /// Of scalars and vectors, in bytes.
+    sizes: HashMap<u32, usize>,
+    /// Elements, and the constant that says how many.
+    arrays: HashMap<u32, [u32; 2]>,
+    constants: HashMap<u32, u32>,
+    strides: HashMap<u32, u32>,
+    offsets: HashMap<(u32, u32), u32>,
+    is_specialized: bool,
+    struct_members: HashMap<u32, Vec<u32>>,
     buffer_blocks: HashSet<u32>,
     pointees: HashMap<u32, u32>,
     sets: HashMap<u32, u32>,
@@ -95,7 +113,7 @@ struct Variable {
     storage: u32,
 }
 
-impl Module {
+impl Reflection {
     /// Reads a module. The error completes "not a usable SPIR-V module:".
     pub(crate) fn read(words: &[u32]) -> Result<Self, String> {
         if words.first() != Some(&MAGIC) {
@@ -137,7 +155,8 @@ impl Module {
         if group_size.contains(&0) {
             return Err("its workgroup size is zero along an axis".to_owned());
         }
-        Ok(Self { entry, group_size, resources: found.resources() })
+        let (resources, push_bytes) = (found.resources(), found.push_bytes());
+        Ok(Self { entry, group_size, resources, push_bytes, is_specialized: found.is_specialized })
     }
 }
 
@@ -145,11 +164,23 @@ impl Declarations {
     fn note(&mut self, opcode: u16, operands: &[u32]) {
         match (opcode, operands) {
             (op::TYPE_FLOAT, &[id, 32, ..]) => {
+                self.sizes.insert(id, 4);
                 self.scalars.insert(id, TexelType::Float);
             }
             (op::TYPE_INT, &[id, 32, signed]) => {
                 let texel = if signed == 0 { TexelType::Uint } else { TexelType::Int };
+                self.sizes.insert(id, 4);
                 self.scalars.insert(id, texel);
+            }
+            (op::TYPE_VECTOR, &[id, scalar, count]) => {
+                let size = self.sizes.get(&scalar).copied().unwrap_or(0);
+                self.sizes.insert(id, size * count as usize);
+            }
+            (op::TYPE_ARRAY, &[id, element, count]) => {
+                self.arrays.insert(id, [element, count]);
+            }
+            (op::CONSTANT, &[_, id, value]) => {
+                self.constants.insert(id, value);
             }
             (op::TYPE_IMAGE, &[id, scalar, dim, _, arrayed, multisampled, sampled, ..]) => {
                 let kind = match (self.scalars.get(&scalar), dim, sampled) {
@@ -172,7 +203,7 @@ impl Declarations {
                 self.images.insert(id, kind);
             }
             (op::TYPE_STRUCT, &[id, ref members @ ..]) => {
-                self.struct_members.insert(id, members.len() as u32);
+                self.struct_members.insert(id, members.to_vec());
             }
             (op::TYPE_POINTER, &[id, _, pointee]) => {
                 self.pointees.insert(id, pointee);
@@ -186,6 +217,13 @@ impl Declarations {
             (op::DECORATE, &[id, decoration::DESCRIPTOR_SET, set]) => {
                 self.sets.insert(id, set);
             }
+            (op::DECORATE, &[id, decoration::ARRAY_STRIDE, stride]) => {
+                self.strides.insert(id, stride);
+            }
+            (op::DECORATE, &[_, decoration::SPEC_ID, 0]) => self.is_specialized = true,
+            (op::MEMBER_DECORATE, &[id, member, decoration::OFFSET, offset]) => {
+                self.offsets.insert((id, member), offset);
+            }
             (op::DECORATE, &[id, decoration::NON_WRITABLE]) => {
                 self.non_writable.insert(id);
             }
@@ -197,6 +235,29 @@ impl Declarations {
             }
             _ => {}
         }
+    }
+
+    /// Bytes of the push constants; none where there are none.
+    fn push_bytes(&self) -> usize {
+        let block = self.variables.iter().find(|of| of.storage == STORAGE_PUSH_CONSTANT);
+        block.and_then(|of| self.pointees.get(&of.pointer)).map_or(0, |&block| self.size(block))
+    }
+
+    /// Of a type, in bytes, without what is behind a struct's last member.
+    fn size(&self, id: u32) -> usize {
+        if let Some(members) = self.struct_members.get(&id) {
+            let end = |(at, member): (usize, &u32)| {
+                let offset = self.offsets.get(&(id, at as u32)).copied().unwrap_or(0);
+                offset as usize + self.size(*member)
+            };
+            return members.iter().enumerate().map(end).max().unwrap_or(0);
+        }
+        if let Some([element, count]) = self.arrays.get(&id) {
+            let stride =
+                self.strides.get(&id).map_or_else(|| self.size(*element), |&at| at as usize);
+            return stride * self.constants.get(count).copied().unwrap_or(0) as usize;
+        }
+        self.sizes.get(&id).copied().unwrap_or(0)
     }
 
     fn resources(&self) -> Vec<Resource> {
@@ -233,7 +294,9 @@ impl Declarations {
     /// glslang writes a `readonly` buffer as one whose members are all non-writable.
     fn all_members_non_writable(&self, id: u32) -> bool {
         match (self.struct_members.get(&id), self.non_writable_members.get(&id)) {
-            (Some(&count), Some(members)) => (0..count).all(|member| members.contains(&member)),
+            (Some(all), Some(members)) => {
+                (0..all.len() as u32).all(|member| members.contains(&member))
+            }
             _ => false,
         }
     }
@@ -271,7 +334,7 @@ mod tests {
 
     #[test]
     fn entry_point_and_group_size_are_read() {
-        let read = Module::read(&module(&entry())).unwrap();
+        let read = Reflection::read(&module(&entry())).unwrap();
         assert_eq!(read.entry.as_c_str(), c"main");
         assert_eq!(read.group_size, [8, 4, 1]);
         assert_eq!(read.resources, []);
@@ -289,12 +352,12 @@ mod tests {
             instruction(op::TYPE_POINTER, &[21, STORAGE_STORAGE_BUFFER, 20]),
             instruction(op::VARIABLE, &[21, 10, STORAGE_STORAGE_BUFFER]),
         ]);
-        let half = Module::read(&module(&instructions)).unwrap().resources;
+        let half = Reflection::read(&module(&instructions)).unwrap().resources;
         let kind = ResourceKind::StorageBuffer;
         assert_eq!(half, [Resource { set: 0, binding: 3, kind, access: Access::Write }]);
         instructions
             .insert(2, instruction(op::MEMBER_DECORATE, &[20, 1, decoration::NON_WRITABLE]));
-        let whole = Module::read(&module(&instructions)).unwrap().resources;
+        let whole = Reflection::read(&module(&instructions)).unwrap().resources;
         assert_eq!(whole, [Resource { set: 0, binding: 3, kind, access: Access::Read }]);
     }
 
@@ -310,7 +373,7 @@ mod tests {
             instruction(op::VARIABLE, &[33, 10, STORAGE_UNIFORM_CONSTANT]),
         ]);
         let kind = ResourceKind::UniformTexelBuffer(TexelType::Uint);
-        let resources = Module::read(&module(&instructions)).unwrap().resources;
+        let resources = Reflection::read(&module(&instructions)).unwrap().resources;
         assert_eq!(resources, [Resource { set: 0, binding: 7, kind, access: Access::Read }]);
     }
 
@@ -326,7 +389,7 @@ mod tests {
             (module(&[vec![0]]), "word 5 is cut short"),
         ];
         for (words, reason) in cases {
-            let error = Module::read(&words).unwrap_err();
+            let error = Reflection::read(&words).unwrap_err();
             assert!(error.contains(reason), "{error}, expected {reason}");
         }
     }

@@ -1,283 +1,331 @@
-//! The compiled modules, by the kernel's name.
+//! The kernels and their variants, in one table, and the committed modules that they are compiled to.
+//!
+//! A row is a file of `glsl/kernels/`, what it does, and its axes. Each axis has values, and each of these has macros that the
+//! source is compiled with; every combination is a module in `spirv/`, named after the kernel and its values.
 
-macro_rules! modules {
-    ($($(#[$doc:meta])* $name:ident),* $(,)?) => {
-        /// Names of all modules: stems of `spirv/*.spv`, and, but for [`VARIANTS`], of
-        /// `glsl/kernels/*.comp`.
-        pub const NAMES: &[&str] = &[$(stringify!($name)),*];
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
+/// A value of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AxisValue {
+    /// What the names of modules have for it; empty where it is the plain one.
+    pub suffix: &'static str,
+    /// Macros that it defines.
+    pub macros: &'static [&'static str],
+}
+
+macro_rules! axes {
+    ($($(#[$doc:meta])* $axis:ident {
+        $($(#[$value_doc:meta])* $value:ident = $suffix:literal [$($macro:ident),*],)*
+    })*) => {
         $($(#[$doc])*
-        #[must_use]
-        pub fn $name() -> Vec<u32> {
-            words(include_bytes!(concat!("../spirv/", stringify!($name), ".spv")))
-        })*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum $axis { $($(#[$value_doc])* $value,)* }
 
-        /// The module of a kernel, by its name.
-        #[must_use]
-        pub fn by_name(name: &str) -> Option<Vec<u32>> {
-            match name {
-                $(stringify!($name) => Some($name()),)*
-                _ => None,
+        impl $axis {
+            const VALUES: &'static [AxisValue] =
+                &[$(AxisValue { suffix: $suffix, macros: &[$(stringify!($macro)),*] }),*];
+
+            fn value(self) -> &'static AxisValue {
+                &Self::VALUES[self as usize]
             }
-        }
+        })*
     };
 }
 
-modules! {
+axes! {
+    /// Where the ray state lives.
+    Rays {
+        /// In four images, twice (\[T\] §5). Lists are read from storage buffers.
+        Images = "" [],
+        /// In a buffer; what no dispatch writes meanwhile is read as texels.
+        Queue = "queue" [QUEUE, TEXELS],
+    }
+    /// How a build reads points and polynomials.
+    Lists {
+        /// From storage buffers.
+        Storage = "" [],
+        /// As texels, where the device takes so many: lavapipe reads those of all lanes at once.
+        Texels = "texels" [TEXELS],
+    }
+    /// The same, and how many neighbours a point has.
+    Neighbors {
+        /// Many, from storage buffers.
+        Storage = "" [],
+        /// Many, as texels.
+        Texels = "texels" [TEXELS],
+        /// At most 16, as texels.
+        Few = "texels_few" [TEXELS, FEW],
+    }
+    /// The same of a search.
+    Finding {
+        /// Many, from storage buffers.
+        Storage = "" [],
+        /// Many, as texels.
+        Texels = "texels" [TEXELS],
+        /// At most 16, as texels.
+        Few = "texels_few" [TEXELS, FEW],
+        /// At most 16, as texels, where no two are equally far.
+        Untied = "untied" [TEXELS, FEW, UNTIED],
+    }
+    /// Where rays start.
+    Start {
+        /// At the camera.
+        Camera = "" [],
+        /// On a surface, whose own sheet they do not meet again at once.
+        Surface = "leaving" [LEAVING],
+    }
+    /// How rays from the camera find their points.
+    Way {
+        /// By the discs of their screen tile.
+        Discs = "" [],
+        /// Through the tree.
+        Tree = "tree" [TREE],
+    }
+    /// What the nodes of a level of the tree are around.
+    Children {
+        /// The boxes of the level below.
+        Boxes = "" [],
+        /// The surfaces of points.
+        Surfaces = "leaves" [LEAVES],
+    }
+    /// Which rays go through volumes.
+    Marching {
+        /// Those of a wave.
+        Wave = "" [],
+        /// Those of a wave, where lamps light volumes.
+        Lit = "lit" [LIT],
+        /// Shadow rays.
+        Shadows = "shadows" [SHADOWS],
+    }
+    /// Which rays look for isosurfaces.
+    Searching {
+        /// Those of a wave.
+        Wave = "" [],
+        /// Shadow rays.
+        Shadows = "shadows" [SHADOWS],
+    }
+}
+
+/// A row of the table.
+#[derive(Debug, Clone, Copy)]
+pub struct Kernel {
+    /// The stem of its source.
+    pub name: &'static str,
+    /// Its axes, in the order of their parts of a module's name.
+    pub axes: &'static [&'static [AxisValue]],
+}
+
+macro_rules! kernels {
+    ($($(#[$doc:meta])* $name:ident($($part:ident: $axis:ident),*);)*) => {
+        /// Every kernel.
+        pub const KERNELS: &[Kernel] =
+            &[$(Kernel { name: stringify!($name), axes: &[$($axis::VALUES),*] }),*];
+
+        $($(#[$doc])*
+        #[must_use]
+        pub fn $name($($part: $axis),*) -> &'static Module {
+            module(stringify!($name), &[$($part.value()),*])
+        })*
+    };
+}
+
+kernels! {
     /// Adds a sample to each pixel's sum.
-    accumulate,
-    /// How far the nearest of each point can be, for many of them.
-    bound_reach,
-    /// `bound_reach`, reading points through a uniform texel buffer.
-    bound_reach_texels,
-    /// `bound_reach_texels` for up to 16.
-    bound_reach_texels_few,
+    accumulate();
+    /// How far the nearest of each point can be.
+    bound_reach(neighbors: Neighbors);
     /// The camera's ray of each pixel.
-    camera_rays,
-    /// `camera_rays` for rays in a queue.
-    camera_rays_queue,
+    camera_rays(rays: Rays);
     /// The first wave from the eye to the film, where rays of a queue need none.
-    camera_trace,
-    /// `camera_trace` through the tree.
-    camera_trace_tree,
+    camera_trace(way: Way);
     /// Where each cell's entries begin.
-    cell_offsets,
+    cell_offsets();
     /// What becomes of each ray of a wave.
-    classify,
-    /// `classify` for rays in a queue.
-    classify_queue,
+    classify(rays: Rays);
     /// Trust balls that end at rims.
-    clip_balls,
+    clip_balls();
     /// Bits set in each word of marks.
-    count_marked,
+    count_marked();
     /// Screen tiles that each disc covers.
-    disc_count,
-    /// `disc_count` for rays in a queue.
-    disc_count_queue,
+    disc_count(rays: Rays);
     /// Pairs of screen tile and point.
-    disc_emit,
-    /// `disc_emit` for rays in a queue.
-    disc_emit_queue,
+    disc_emit(rays: Rays);
     /// Where each screen tile's points begin and end.
-    disc_ranges,
+    disc_ranges();
     /// The nearest hit among the points of a screen tile.
-    disc_trace,
-    /// `disc_trace` for rays in a queue.
-    disc_trace_queue,
-    /// The nearest of each point, for many of them.
-    find_neighbors,
-    /// `find_neighbors`, reading points through a uniform texel buffer.
-    find_neighbors_texels,
-    /// `find_neighbors_texels` for up to 16.
-    find_neighbors_texels_few,
-    /// `find_neighbors_texels_few` where no two others are equally far.
-    find_neighbors_untied,
+    disc_trace(rays: Rays);
+    /// The nearest of each point.
+    find_neighbors(finding: Finding);
     /// The local polynomial of each point.
-    fit_polynomials,
-    /// The same, reading points through a uniform texel buffer.
-    fit_polynomials_texels,
-    /// `fit_polynomials_texels` for lists of up to 16.
-    fit_polynomials_texels_few,
+    fit_polynomials(neighbors: Neighbors);
     /// Boxes of points that the balls of others touch.
-    gather_leaves,
-    /// The same, reading points and boxes through uniform texel buffers.
-    gather_leaves_texels,
+    gather_leaves(lists: Lists);
     /// Cells that each trust ball meets.
-    grid_count,
-    /// The same, reading polynomials through a uniform texel buffer.
-    grid_count_texels,
+    grid_count(lists: Lists);
     /// Pairs of cell and point.
-    grid_emit,
+    grid_emit(lists: Lists);
     /// Those of large balls.
-    grid_emit_large,
-    /// The same, reading polynomials through a uniform texel buffer.
-    grid_emit_large_texels,
-    /// `grid_emit`, reading polynomials through a uniform texel buffer.
-    grid_emit_texels,
+    grid_emit_large(lists: Lists);
     /// Where each cell's points begin and end.
-    grid_ranges,
-    /// One pass of the traversal.
-    grid_trace,
-    /// The same for rays that start on surfaces.
-    grid_trace_leaving,
-    /// `grid_trace_leaving` for rays in a queue.
-    grid_trace_leaving_queue,
-    /// `grid_trace` for rays in a queue.
-    grid_trace_queue,
+    grid_ranges();
+    /// One pass of the traversal of the grid.
+    grid_trace(start: Start, rays: Rays);
     /// Cells beside marked ones.
-    grow_marks,
+    grow_marks();
     /// Where rays first meet an isosurface.
-    isosurface,
-    /// `isosurface` for rays in a queue.
-    isosurface_queue,
-    /// Whether shadow rays meet one.
-    isosurface_shadows,
-    /// `isosurface_shadows` for rays in a queue.
-    isosurface_shadows_queue,
+    isosurface(of: Searching, rays: Rays);
     /// Boxes around points.
-    leaf_boxes,
-    /// The same, reading points through a uniform texel buffer.
-    leaf_boxes_texels,
+    leaf_boxes(lists: Lists);
     /// The rays that are marked, one after another.
-    list_marked,
+    list_marked();
     /// The points of each cell with their positions.
-    list_points,
-    /// The same, reading polynomials through a uniform texel buffer.
-    list_points_texels,
+    list_points(lists: Lists);
     /// Rays through volumes.
-    march,
-    /// Rays through volumes that lights shine into.
-    march_lit,
-    /// `march_lit` for rays in a queue.
-    march_lit_queue,
-    /// `march` for rays in a queue.
-    march_queue,
-    /// Shadow rays through volumes.
-    march_shadows,
-    /// `march_shadows` for rays in a queue.
-    march_shadows_queue,
+    march(of: Marching, rays: Rays);
     /// Cells that have points.
-    mark_occupied,
+    mark_occupied();
     /// Boxes around boxes.
-    node_boxes,
+    node_boxes();
     /// Trust balls in the order that the grid lists them in.
-    order_balls,
-    /// `order_balls`, reading polynomials through a uniform texel buffer.
-    order_balls_texels,
+    order_balls(lists: Lists);
     /// What of a light's reaches the points of a volume.
-    point_lights,
-    /// `point_lights` for rays in a queue.
-    point_lights_queue,
+    point_lights(rays: Rays);
     /// Rays from the points of a volume towards a light.
-    point_rays,
-    /// `point_rays` for rays in a queue.
-    point_rays_queue,
+    point_rays(rays: Rays);
     /// One iteration of each pending hit towards the point set surface.
-    refine,
-    /// `refine` for rays in a queue.
-    refine_queue,
+    refine(rays: Rays);
     /// Sends rays whose hit was refined away on to the next.
-    resume,
-    /// `resume` for rays in a queue.
-    resume_queue,
+    resume(rays: Rays);
     /// Prefix sums, second half.
-    scan_apply,
+    scan_apply();
     /// Prefix sums, first half.
-    scan_reduce,
+    scan_reduce();
     /// Reflected and refracted rays.
-    scatter,
-    /// `scatter` for rays in a queue.
-    scatter_queue,
+    scatter(rays: Rays);
     /// Lambert's law at the diffuse hits.
-    shade,
-    /// `shade` for rays in a queue.
-    shade_queue,
+    shade(rays: Rays);
     /// Shadow rays on the other side of surfaces that let them through.
-    shadow_go_on,
-    /// `shadow_go_on` for rays in a queue.
-    shadow_go_on_queue,
+    shadow_go_on(rays: Rays);
     /// What shadow rays start inside.
-    shadow_media,
-    /// `shadow_media` for rays in a queue.
-    shadow_media_queue,
+    shadow_media(rays: Rays);
     /// What the surfaces that shadow rays have met do to light.
-    shadow_meet,
-    /// `shadow_meet` for rays in a queue.
-    shadow_meet_queue,
+    shadow_meet(rays: Rays);
     /// Rays towards a light.
-    shadow_rays,
-    /// `shadow_rays` for rays in a queue.
-    shadow_rays_queue,
+    shadow_rays(rays: Rays);
     /// Discs as polynomials.
-    shape_discs,
+    shape_discs();
     /// Spheres as polynomials.
-    shape_spheres,
+    shape_spheres();
     /// How far empty cells are from others.
-    skip_cells,
+    skip_cells();
     /// Feature sizes as means over neighbours.
-    smooth_sizes,
-    /// The same, reading points through a uniform texel buffer.
-    smooth_sizes_texels,
+    smooth_sizes(lists: Lists);
     /// Stable sort by one digit, first half.
-    sort_count,
+    sort_count();
     /// Stable sort by one digit, second half.
-    sort_scatter,
+    sort_scatter();
     /// Where each ray met the polynomial it hit.
-    surface_hit,
-    /// `surface_hit` for rays in a queue.
-    surface_hit_queue,
-    /// The same as `tree_nodes`, around the surfaces of points.
-    tree_leaves,
+    surface_hit(rays: Rays);
     /// Nodes of one level of the tree.
-    tree_nodes,
+    tree_nodes(children: Children);
     /// One pass of the traversal of the tree.
-    tree_trace,
-    /// `tree_trace` for rays that start on surfaces.
-    tree_trace_leaving,
+    tree_trace(start: Start);
 }
 
-/// Modules made of another kernel's source with macros defined: name, kernel, macros.
-pub const VARIANTS: &[(&str, &str, &[&str])] = &[
-    ("bound_reach_texels", "bound_reach", &["POINTS_AS_TEXELS"]),
-    ("bound_reach_texels_few", "bound_reach", &["POINTS_AS_TEXELS", "FEW"]),
-    ("camera_rays_queue", "camera_rays", &["QUEUE"]),
-    ("camera_trace_tree", "camera_trace", &["TREE"]),
-    ("classify_queue", "classify", &["QUEUE"]),
-    ("disc_count_queue", "disc_count", &["QUEUE"]),
-    ("disc_emit_queue", "disc_emit", &["QUEUE"]),
-    ("disc_trace_queue", "disc_trace", &["QUEUE"]),
-    ("find_neighbors_texels", "find_neighbors", &["POINTS_AS_TEXELS"]),
-    ("find_neighbors_texels_few", "find_neighbors", &["POINTS_AS_TEXELS", "FEW"]),
-    ("find_neighbors_untied", "find_neighbors", &["POINTS_AS_TEXELS", "FEW", "UNTIED"]),
-    ("fit_polynomials_texels", "fit_polynomials", &["POINTS_AS_TEXELS"]),
-    ("fit_polynomials_texels_few", "fit_polynomials", &["POINTS_AS_TEXELS", "FEW"]),
-    ("gather_leaves_texels", "gather_leaves", &["POINTS_AS_TEXELS"]),
-    ("grid_count_texels", "grid_count", &["POINTS_AS_TEXELS"]),
-    ("grid_emit_large_texels", "grid_emit_large", &["POINTS_AS_TEXELS"]),
-    ("grid_emit_texels", "grid_emit", &["POINTS_AS_TEXELS"]),
-    ("grid_trace_leaving", "grid_trace", &["LEAVES"]),
-    ("grid_trace_leaving_queue", "grid_trace", &["LEAVES", "QUEUE"]),
-    ("grid_trace_queue", "grid_trace", &["QUEUE"]),
-    ("isosurface_queue", "isosurface", &["QUEUE"]),
-    ("isosurface_shadows", "isosurface", &["SHADOWS"]),
-    ("isosurface_shadows_queue", "isosurface", &["SHADOWS", "QUEUE"]),
-    ("leaf_boxes_texels", "leaf_boxes", &["POINTS_AS_TEXELS"]),
-    ("list_points_texels", "list_points", &["POINTS_AS_TEXELS"]),
-    ("march_lit", "march", &["LIT"]),
-    ("march_lit_queue", "march", &["LIT", "QUEUE"]),
-    ("march_queue", "march", &["QUEUE"]),
-    ("march_shadows", "march", &["SHADOWS"]),
-    ("march_shadows_queue", "march", &["SHADOWS", "QUEUE"]),
-    ("order_balls_texels", "order_balls", &["POINTS_AS_TEXELS"]),
-    ("point_lights_queue", "point_lights", &["QUEUE"]),
-    ("point_rays_queue", "point_rays", &["QUEUE"]),
-    ("refine_queue", "refine", &["QUEUE"]),
-    ("resume_queue", "resume", &["QUEUE"]),
-    ("scatter_queue", "scatter", &["QUEUE"]),
-    ("shade_queue", "shade", &["QUEUE"]),
-    ("shadow_go_on_queue", "shadow_go_on", &["QUEUE"]),
-    ("shadow_media_queue", "shadow_media", &["QUEUE"]),
-    ("shadow_meet_queue", "shadow_meet", &["QUEUE"]),
-    ("shadow_rays_queue", "shadow_rays", &["QUEUE"]),
-    ("smooth_sizes_texels", "smooth_sizes", &["POINTS_AS_TEXELS"]),
-    ("surface_hit_queue", "surface_hit", &["QUEUE"]),
-    ("tree_leaves", "tree_nodes", &["LEAVES"]),
-    ("tree_trace_leaving", "tree_trace", &["LEAVES"]),
-];
-
-/// The kernel whose source a module is made of, and the macros it is compiled with.
+/// Whether a kernel lets rays go through the points.
 #[must_use]
-pub fn source_of(name: &str) -> (&str, &'static [&'static str]) {
-    VARIANTS
-        .iter()
-        .find(|variant| variant.0 == name)
-        .map_or((name, &[]), |variant| (variant.1, variant.2))
+pub fn is_traversal(kernel: &str) -> bool {
+    ["grid_trace", "tree_trace", "disc_trace", "camera_trace"].contains(&kernel)
 }
 
-/// Words of a module, whatever the alignment of its bytes.
-fn words(bytes: &[u8]) -> Vec<u32> {
-    bytes
-        .chunks_exact(4)
-        .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
-        .collect()
+/// A committed module. There is no way to make another, so who has one may trust it to be valid SPIR-V with one
+/// compute entry point.
+#[derive(Debug)]
+pub struct Module {
+    name: String,
+    kernel: &'static str,
+    macros: Vec<&'static str>,
+    bytes: &'static [u8],
+    words: OnceLock<Vec<u32>>,
+}
+
+impl Module {
+    /// The stem of its file.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The kernel that it is a variant of.
+    #[must_use]
+    pub fn kernel(&self) -> &'static str {
+        self.kernel
+    }
+
+    /// The macros that its source is compiled with.
+    #[must_use]
+    pub fn macros(&self) -> &[&'static str] {
+        &self.macros
+    }
+
+    /// Its words, made from its bytes when they are first asked for.
+    pub fn words(&self) -> &[u32] {
+        self.words.get_or_init(|| {
+            let word = |word: &[u8]| u32::from_le_bytes([word[0], word[1], word[2], word[3]]);
+            self.bytes.chunks_exact(4).map(word).collect()
+        })
+    }
+}
+
+/// Names and bytes of the files in `spirv/`, by name.
+const FILES: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/modules.rs"));
+
+/// Every module, by its name; one that is not committed yet has no words.
+pub fn modules() -> &'static BTreeMap<String, Module> {
+    static MODULES: OnceLock<BTreeMap<String, Module>> = OnceLock::new();
+    MODULES.get_or_init(|| KERNELS.iter().flat_map(variants).collect())
+}
+
+/// All combinations of a kernel's axes.
+fn variants(kernel: &Kernel) -> Vec<(String, Module)> {
+    let mut chosen: Vec<Vec<&'static AxisValue>> = vec![Vec::new()];
+    for axis in kernel.axes {
+        let with = |values: &Vec<&'static AxisValue>| {
+            axis.iter().map(|value| [&values[..], &[value]].concat()).collect::<Vec<_>>()
+        };
+        chosen = chosen.iter().flat_map(with).collect();
+    }
+    let module = |values: &Vec<&'static AxisValue>| {
+        let name = name_of(kernel.name, values);
+        let file = FILES.binary_search_by(|file| file.0.cmp(&name));
+        let bytes = file.map_or(&[][..], |at| FILES[at].1);
+        let macros = values.iter().flat_map(|value| value.macros).copied().collect();
+        (name.clone(), Module { name, kernel: kernel.name, macros, bytes, words: OnceLock::new() })
+    };
+    chosen.iter().map(module).collect()
+}
+
+fn name_of(kernel: &str, values: &[&'static AxisValue]) -> String {
+    let suffixes = values.iter().map(|value| value.suffix).filter(|suffix| !suffix.is_empty());
+    std::iter::once(kernel).chain(suffixes).collect::<Vec<_>>().join("_")
+}
+
+fn module(kernel: &'static str, values: &[&'static AxisValue]) -> &'static Module {
+    let name = name_of(kernel, values);
+    // The table has all combinations of a kernel's axes, and these are one.
+    modules().get(&name).unwrap_or_else(|| unreachable!("{name}: a combination of axes"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_module_is_committed_and_no_other() {
+        let files: Vec<&str> = FILES.iter().map(|file| file.0).collect();
+        let modules: Vec<&str> = modules().keys().map(String::as_str).collect();
+        assert_eq!(files, modules, "files of spirv/ and modules of the table");
+    }
 }

@@ -1,15 +1,18 @@
 //! Host structs and constants against what the compiled kernels say.
-#![allow(clippy::expect_used, reason = "a test fails by panicking")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-use kernels::{layout, source, spirv};
+use kernels::{layout, spirv};
 use rspirv::binary::Disassemble;
 use rspirv::dr::{Module, Operand};
 use rspirv::spirv::{Decoration, ExecutionMode, Op};
 use std::collections::{BTreeMap, BTreeSet};
 
-fn module(name: &str) -> Module {
-    let words = spirv::by_name(name).expect("a module for every name");
-    rspirv::dr::load_words(words).expect("a module that parses")
+fn modules() -> impl Iterator<Item = (&'static spirv::Module, Module)> {
+    let parsed = |module: &'static spirv::Module| {
+        let words = rspirv::dr::load_words(module.words());
+        (module, words.expect("a module that parses"))
+    };
+    spirv::modules().values().map(parsed)
 }
 
 type Members = Vec<(String, usize)>;
@@ -57,47 +60,27 @@ fn structs_with_offsets(module: &Module) -> Vec<(String, Members)> {
 #[test]
 fn layout_matches_spirv() {
     let mut seen = BTreeSet::new();
-    for kernel in spirv::NAMES {
-        for (name, members) in structs_with_offsets(&module(kernel)) {
-            let Some(host) = layout::STRUCTS.iter().find(|host| host.name == name) else {
+    for (kernel, module) in modules() {
+        for (name, members) in structs_with_offsets(&module) {
+            let Some(host) = layout::structs().find(|host| host.name == name) else {
                 continue; // the block around a runtime array
             };
             let host: Members =
-                host.members.iter().map(|&(member, at)| (member.to_owned(), at)).collect();
-            assert_eq!(host, members, "{name}: host (left) and {kernel}.spv (right)");
+                host.members.iter().map(|of| (of.name.to_owned(), of.offset)).collect();
+            assert_eq!(host, members, "{name}: host (left) and {}.spv (right)", kernel.name());
             seen.insert(name);
         }
     }
-    let all: BTreeSet<String> = layout::STRUCTS.iter().map(|s| s.name.to_owned()).collect();
+    let all: BTreeSet<String> = layout::structs().map(|of| of.name.to_owned()).collect();
     assert_eq!(seen, all, "structs that kernels use (left) and that the host lists (right)");
 }
 
-#[test]
-fn constants_match_the_host() {
-    let path = source::glsl_folder().join("shared/layout.glsl");
-    let text = std::fs::read_to_string(path).expect("layout.glsl");
-    let mut defined = BTreeMap::new();
-    for line in text.lines().filter_map(|line| line.strip_prefix("#define ")) {
-        let mut words = line.split_whitespace();
-        let name = words.next().expect("a name after #define");
-        if let Some(value) = words.next() {
-            let value = value.trim_end_matches('u');
-            let value = match value.strip_prefix("0x") {
-                Some(digits) => u32::from_str_radix(digits, 16),
-                None => value.parse(),
-            };
-            defined.insert(name, value.expect("an unsigned number"));
-        }
-    }
-    let host: BTreeMap<&str, u32> = layout::CONSTANTS.iter().copied().collect();
-    assert_eq!(host, defined, "host (left) and layout.glsl (right)");
-}
-
-/// The bindings a pass gives are checked where it records; here, that none lies past the host's.
+/// Every binding is one that the host knows, and every one that it knows some kernel uses.
 #[test]
 fn group_sizes_and_bindings_match_the_host() {
-    for kernel in spirv::NAMES {
-        let module = module(kernel);
+    let mut used = BTreeSet::new();
+    for (kernel, module) in modules() {
+        let name = kernel.name();
         let size: Vec<u32> = module
             .execution_modes
             .iter()
@@ -110,25 +93,28 @@ fn group_sizes_and_bindings_match_the_host() {
                 _ => None,
             })
             .collect();
-        let over_pixels = ["accumulate", "camera_rays", "camera_trace", "disc_trace"]
-            .contains(&spirv::source_of(kernel).0);
+        let over_pixels =
+            ["accumulate", "camera_rays", "camera_trace", "disc_trace"].contains(&kernel.kernel());
         let group = if over_pixels { layout::TILE_GROUP } else { layout::LINE_GROUP };
-        assert_eq!(size, [group, 1, 1], "{kernel}: workgroup");
+        assert_eq!(size, [group, 1, 1], "{name}: workgroup");
         for line in &module.annotations {
-            if let [_, Operand::Decoration(Decoration::Binding), Operand::LiteralBit32(binding)] =
+            if let [_, Operand::Decoration(Decoration::Binding), Operand::LiteralBit32(number)] =
                 line.operands.as_slice()
             {
-                assert!(*binding <= layout::SHADOW_PATHS, "{kernel}: binding {binding}");
+                let known = layout::binding(*number);
+                used.insert(known.unwrap_or_else(|| panic!("{name}: binding {number}")).name);
             }
         }
     }
+    let all: BTreeSet<&str> = layout::bindings().map(|of| of.name).collect();
+    assert_eq!(used, all, "bindings that kernels use (left) and that the host lists (right)");
 }
 
 /// A float operation that a driver may fuse is a pixel that differs from the twin.
 #[test]
 fn every_float_operation_is_exact() {
-    for kernel in spirv::NAMES {
-        let module = module(kernel);
+    for (kernel, module) in modules() {
+        let kernel = kernel.name();
         let exact: BTreeSet<u32> = module
             .annotations
             .iter()

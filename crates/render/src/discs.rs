@@ -3,12 +3,14 @@
 //! Depends on the camera, so it runs for every tile of every picture. Buffers stay from one to the
 //! next and grow where they must.
 
-use crate::passes::{DiscCount, DiscEmit, DiscRanges};
-use crate::state::RayLoop;
-use gpu::{Buffer, Device, GpuError, Kernel, Recorder, Timings};
-use kernels::layout::{DepthRanks, DiscParams, LEAF_POINTS};
+use gpu::{Bindings, Buffer, Device, GpuError, Recorder, Timings};
+use kernels::layout::{
+    DISC_KEYS, DISC_LEAVES, DISC_OFFSETS, DISC_TILES, DepthRanks, DiscParams, LEAF_POINTS,
+    POLYNOMIALS,
+};
+use kernels::spirv::{self, Module, Rays};
 use plan::{MAX_DISC_PAIRS, Plan, Window, screen_tiles};
-use points::device::{Pairs, Scan, Sort, SortSpace, Surfaces};
+use points::device::{Pairs, Scan, Sort, SortSpace, Surfaces, line};
 use std::sync::Arc;
 
 /// The leaves of each screen tile, front to back.
@@ -39,14 +41,20 @@ impl DiscLists {
     }
 }
 
+impl DiscLists {
+    /// For the kernels that read them.
+    pub(crate) fn bindings(&self) -> Bindings {
+        Bindings::new()
+            .buffer(DISC_TILES, &self.tiles)
+            .buffer(DISC_KEYS, &self.pairs.keys)
+            .buffer(DISC_LEAVES, &self.pairs.slots)
+    }
+}
+
 /// Bins the discs of a scene.
 pub(crate) struct Discs {
     device: Arc<Device>,
-    count: DiscCount,
-    emit: DiscEmit,
-    ranges: DiscRanges,
-    scan: Scan,
-    sort: Sort,
+    rays: Rays,
     offsets: Buffer,
     levels: Vec<Buffer>,
     lists: Option<DiscLists>,
@@ -54,15 +62,11 @@ pub(crate) struct Discs {
 
 impl Discs {
     /// For a scene of `point_count` points.
-    pub fn new(device: &Arc<Device>, point_count: u32, form: RayLoop) -> Result<Self, GpuError> {
+    pub fn new(device: &Arc<Device>, point_count: u32, rays: Rays) -> Result<Self, GpuError> {
         let leaves = point_count.div_ceil(LEAF_POINTS);
         Ok(Self {
             device: Arc::clone(device),
-            count: DiscCount::new(device, form)?,
-            emit: DiscEmit::new(device, form)?,
-            ranges: DiscRanges::new(device)?,
-            scan: Scan::new(device)?,
-            sort: Sort::new(device)?,
+            rays,
             offsets: Buffer::new(device, "disc offsets", (u64::from(leaves) + 1) * 4)?,
             levels: Scan::levels(device, leaves + 1)?,
             lists: None,
@@ -70,12 +74,9 @@ impl Discs {
     }
 
     /// What it takes to bin discs.
-    pub fn kernels(device: &Arc<Device>, form: RayLoop) -> Result<Vec<Kernel>, GpuError> {
-        let (count, emit) = (DiscCount::new(device, form)?, DiscEmit::new(device, form)?);
-        let ranges = DiscRanges::new(device)?;
-        let own = [count.kernel, emit.kernel, ranges.kernel];
-        let (scan, sort) = (Scan::new(device)?.kernels(), Sort::new(device)?.kernels());
-        Ok([&own[..], &scan, &sort].concat())
+    pub fn modules(rays: Rays) -> Vec<&'static Module> {
+        let own = [spirv::disc_count(rays), spirv::disc_emit(rays), spirv::disc_ranges()];
+        [&own[..], &Scan::modules(), &Sort::modules()].concat()
     }
 
     /// What [`Discs::bin`] made last.
@@ -113,8 +114,12 @@ impl Discs {
         let leaves = params.point_count.div_ceil(LEAF_POINTS);
         let end = u64::from(leaves) * 4;
         rec.fill(&self.offsets, end, 4, 0);
-        self.count.record(rec, polynomials, &self.offsets, params);
-        self.scan.record(rec, &self.offsets, leaves + 1, &self.levels);
+        rec.pass(spirv::disc_count(self.rays))
+            .buffer(POLYNOMIALS, polynomials)
+            .buffer(DISC_OFFSETS, &self.offsets)
+            .push(params)
+            .dispatch(line(leaves));
+        Scan::record(rec, &self.offsets, leaves + 1, &self.levels);
         timed(&rec.submit()?);
         let mut total = [0];
         self.offsets.read(end, &mut total)?;
@@ -143,11 +148,21 @@ impl Discs {
         (lists.pair_count, lists.ranks) = (params.pair_count, params.ranks);
         rec.fill(&lists.tiles, 0, u64::from(tiles) * 8, 0);
         if params.pair_count > 0 {
-            self.emit.record(rec, polynomials, &self.offsets, &lists.pairs, params);
+            rec.pass(spirv::disc_emit(self.rays))
+                .buffer(POLYNOMIALS, polynomials)
+                .buffer(DISC_OFFSETS, &self.offsets)
+                .buffer(DISC_KEYS, &lists.pairs.keys)
+                .buffer(DISC_LEAVES, &lists.pairs.slots)
+                .push(params)
+                .dispatch(line(params.point_count.div_ceil(LEAF_POINTS)));
             let largest = (tiles << params.ranks.bits) - 1;
             let DiscLists { pairs, space, pair_count, .. } = &mut lists;
-            self.sort.record(rec, &self.scan, pairs, space, *pair_count, largest);
-            self.ranges.record(rec, &lists.pairs.keys, &lists.tiles, params);
+            Sort::record(rec, pairs, space, *pair_count, largest);
+            rec.pass(spirv::disc_ranges())
+                .buffer(DISC_KEYS, &lists.pairs.keys)
+                .buffer(DISC_TILES, &lists.tiles)
+                .push(params)
+                .dispatch(line(params.pair_count));
         }
         self.lists = Some(lists);
         Ok(())

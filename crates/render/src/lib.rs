@@ -6,19 +6,22 @@
 //! same bytes, which the test `every_k_gives_the_same_bytes` checks.
 #![forbid(unsafe_code)]
 
+mod ahead;
 mod budget;
 mod discs;
 mod frame;
-mod passes;
-mod samples;
+mod marks;
+mod renderer;
+mod stages;
 mod state;
-mod volumes;
-mod wave;
+mod stats;
+mod tables;
 
 pub use discs::DiscLists;
-pub use frame::{FrameStats, Renderer, Traversal};
 pub use points::device::BuildError;
+pub use renderer::Renderer;
 pub use state::RayLoop;
+pub use stats::{FrameStats, Traversal};
 
 /// Why a frame could not be finished.
 #[derive(Debug, thiserror::Error)]

@@ -1,7 +1,8 @@
 //! The ray state: four storage images, twice, in place of the paper's render targets; or a queue in a buffer.
 
-use gpu::{Binding, Buffer, Device, GpuError, Image, ImageFormat, PassBuilder, Texel};
+use gpu::{Bindings, Buffer, Device, GpuError, Image, ImageFormat};
 use kernels::layout::{STATE_IN, STATE_OUT, STATE_ROW, StateRay};
+use kernels::spirv::Rays;
 use std::sync::Arc;
 
 /// Where the ray state lives. Both give the same bits.
@@ -12,15 +13,6 @@ pub enum RayLoop {
     /// In a buffer, in place: a pass writes of a ray what it changes, and a ray that is done costs nothing.
     /// Kernels read rays, polynomials, the grid's lists and volumes through uniform texel buffers then.
     Queue,
-}
-
-/// What a kernel does with the ray state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Touch {
-    Reads,
-    Writes,
-    /// Reads rays, and writes the same ones, or those of the next wave.
-    Updates,
 }
 
 impl RayLoop {
@@ -34,40 +26,17 @@ impl RayLoop {
         }
     }
 
-    /// The bindings of a kernel that touches the state.
-    pub(crate) fn bindings(self, touch: Touch) -> Vec<(u32, Binding)> {
-        let at = |first: u32, queue| match self {
-            Self::Images => (0..4).map(|i| (first + i, Binding::StorageImage)).collect(),
-            Self::Queue => vec![(first, queue)],
-        };
-        let read = || at(STATE_IN, Binding::UniformTexelBuffer(Texel::Four));
-        let written = || at(STATE_OUT, Binding::StorageBuffer);
-        match touch {
-            Touch::Reads => read(),
-            Touch::Writes => written(),
-            Touch::Updates => [read(), written()].concat(),
-        }
-    }
-
-    /// How kernels read a list that no dispatch writes while they do.
-    pub(crate) fn read(self, texel: Texel) -> Binding {
+    /// The variant of kernels for it.
+    pub(crate) fn rays(self) -> Rays {
         match self {
-            Self::Images => Binding::StorageBuffer,
-            Self::Queue => Binding::UniformTexelBuffer(texel),
-        }
-    }
-
-    /// The module of a kernel for it.
-    pub(crate) fn module(self, images: fn() -> Vec<u32>, queue: fn() -> Vec<u32>) -> Vec<u32> {
-        match self {
-            Self::Images => images(),
-            Self::Queue => queue(),
+            Self::Images => Rays::Images,
+            Self::Queue => Rays::Queue,
         }
     }
 }
 
 /// The rays of a wave, one after another (`glsl/shared/state.glsl`).
-pub(crate) enum StoredRays {
+enum StoredRays {
     /// Position, direction, cell and where the ray started, with the nearest hit so far packed among them;
     /// `STATE_ROW` rays a row.
     Images([Image; 4]),
@@ -91,34 +60,19 @@ impl StoredRays {
         })
     }
 
-    /// Binds them for a kernel that reads them.
-    pub fn bind_read<'a>(&self, pass: PassBuilder<'a>) -> PassBuilder<'a> {
-        self.bind(pass, STATE_IN)
-    }
-
-    /// Binds them for a kernel that writes all of them.
-    pub fn bind_written<'a>(&self, pass: PassBuilder<'a>) -> PassBuilder<'a> {
-        self.bind(pass, STATE_OUT)
-    }
-
-    /// Binds them for a kernel that updates some of them in place.
-    pub fn bind_in_place<'a>(&self, pass: PassBuilder<'a>) -> PassBuilder<'a> {
-        self.bind(self.bind(pass, STATE_IN), STATE_OUT)
-    }
-
-    fn bind<'a>(&self, pass: PassBuilder<'a>, first: u32) -> PassBuilder<'a> {
+    fn bind(&self, bindings: Bindings, first: u32) -> Bindings {
         match self {
             Self::Images(images) => (first..)
                 .zip(images)
-                .fold(pass, |pass, (binding, image)| pass.image(binding, image)),
-            Self::Queue(buffer) => pass.buffer(first, buffer),
+                .fold(bindings, |bindings, (binding, image)| bindings.image(binding, image)),
+            Self::Queue(buffer) => bindings.buffer(first, buffer),
         }
     }
 }
 
 /// What a pass reads, and what it writes.
 pub(crate) struct RayState {
-    pub current: StoredRays,
+    current: StoredRays,
     /// Of a queue there is another only where waves follow.
     next: Option<StoredRays>,
 }
@@ -136,29 +90,26 @@ impl RayState {
         Ok(Self { current: set()?, next })
     }
 
-    /// Binds it for a pass over all rays, which [`RayState::passed`] follows.
-    pub fn bind_update<'a>(&self, pass: PassBuilder<'a>) -> PassBuilder<'a> {
+    /// For a pass that reads rays, or updates some of them where they are.
+    pub fn in_place(&self) -> Bindings {
+        self.table(&self.current)
+    }
+
+    /// For a pass over all rays, or one that starts them, which [`RayState::passed`] follows.
+    pub fn updated(&self) -> Bindings {
         match &self.current {
-            StoredRays::Images(_) => self.bind_move(pass),
-            StoredRays::Queue(_) => self.current.bind_in_place(pass),
+            StoredRays::Images(_) => self.moved(),
+            StoredRays::Queue(_) => self.in_place(),
         }
     }
 
-    /// Binds it for the pass that makes the next wave, which [`RayState::swap`] follows.
-    pub fn bind_move<'a>(&self, pass: PassBuilder<'a>) -> PassBuilder<'a> {
-        self.next().bind_written(self.current.bind_read(pass))
+    /// For the pass that makes the next wave, which [`RayState::swap`] follows.
+    pub fn moved(&self) -> Bindings {
+        self.table(self.next.as_ref().unwrap_or(&self.current))
     }
 
-    /// What a pass that starts rays writes, which [`RayState::passed`] follows.
-    pub fn started(&self) -> &StoredRays {
-        match &self.current {
-            StoredRays::Images(_) => self.next(),
-            StoredRays::Queue(_) => &self.current,
-        }
-    }
-
-    fn next(&self) -> &StoredRays {
-        self.next.as_ref().unwrap_or(&self.current)
+    fn table(&self, written: &StoredRays) -> Bindings {
+        written.bind(self.current.bind(Bindings::new(), STATE_IN), STATE_OUT)
     }
 
     /// After a pass over all rays: of images, what was written is read next.

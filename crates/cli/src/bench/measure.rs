@@ -65,15 +65,16 @@ fn timed(
     let filtered_out = sets.iter().map(|set| set.filtered_out).sum();
     let (plan, planned) = planned(case, &input, &sets, runs, progress)?;
     drop(sets);
+    let plan = Arc::new(plan);
     let (mut built, builds, prepared) = build(engine, &plan, [runs, on_cpu], progress)?;
-    let warm_up = built.built.frame(&plan, progress)?;
+    let warm_up = built.built.frame(progress)?;
     let pixels = pixel_hash(&warm_up.film, plan.samples);
     let warm_up_ms = milliseconds(warm_up.wall);
     let pipelines_ms = milliseconds(built.first_pipelines + warm_up.pipelines);
     let mut frame = warm_up;
     let mut times = Times::default();
     for _ in 0..runs {
-        frame = built.built.frame(&plan, progress)?;
+        frame = built.built.frame(progress)?;
         times.trace.push(frame.trace);
         times.wall.push(frame.wall);
         times.gpu.extend(frame.gpu_ms());
@@ -173,7 +174,7 @@ struct LastBuilt {
 /// takes, and in turn with the preparation of the same points on the CPU.
 fn build(
     engine: &Engine,
-    plan: &Plan,
+    plan: &Arc<Plan>,
     [runs, on_cpu]: [u32; 2],
     progress: &Progress,
 ) -> Result<(LastBuilt, Vec<Duration>, Vec<Duration>), Failure> {

@@ -14,6 +14,7 @@ use plan::{Diagnostic, Extra, Plan};
 use points::Watch;
 use serde_json::{Value, json};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Renders. Whatever can be checked is checked before points are read.
@@ -134,8 +135,9 @@ fn render(
     let provenance = exr.then(|| provenance::of(&plan, input, &sets, engine));
     drop(sets);
     let planned = started.elapsed() - read;
+    let plan = Arc::new(plan);
     let mut built = engine.build(&plan, progress)?;
-    let frame = built.frame(&plan, progress)?;
+    let frame = built.frame(progress)?;
     let wall = started.elapsed();
     warn_of_missing_surfaces(&plan, &built, progress);
     // Of a part that was asked for, or where it is known why, nothing is no surprise.

@@ -2,13 +2,10 @@
 
 use super::line;
 use super::work::Work;
-use gpu::{Binding, Buffer, Device, GpuError, Kernel};
-use kernels::layout::{BallClip, CLIP_CLIPS, CLIP_POLYNOMIALS, ClipParams, Polynomial};
+use gpu::{Buffer, Device, GpuError};
+use kernels::layout::{BallClip, CLIPS, ClipParams, POLYNOMIALS, Polynomial};
 use kernels::spirv;
 use std::sync::Arc;
-
-/// Label and row of the timing table.
-const NAME: &str = "clip_balls";
 
 /// Polynomials bound at a time: 64 MiB.
 const PAGE: u32 = 1 << 20;
@@ -23,9 +20,6 @@ pub(crate) fn clip_balls(
     if clips.is_empty() {
         return Ok(());
     }
-    let bindings = [CLIP_CLIPS, CLIP_POLYNOMIALS].map(|at| (at, Binding::StorageBuffer));
-    let kernel =
-        Kernel::new(device, NAME, &spirv::clip_balls(), &bindings, size_of::<ClipParams>())?;
     // A page of polynomials at a time, since all of them may be longer than a binding.
     for clips in clips.chunk_by(|a, b| a.slot / PAGE == b.slot / PAGE) {
         let Some(page) = clips.first().map(|clip| clip.slot / PAGE) else { continue };
@@ -36,9 +30,9 @@ pub(crate) fn clip_balls(
         let page_bytes = u64::from(PAGE) * size_of::<Polynomial>() as u64;
         let offset = u64::from(page) * page_bytes;
         let bytes = page_bytes.min(polynomials.bytes() - offset);
-        rec.pass(NAME, &kernel)
-            .buffer(CLIP_CLIPS, &list)
-            .buffer_part(CLIP_POLYNOMIALS, polynomials, offset, bytes)
+        rec.pass(spirv::clip_balls())
+            .buffer(CLIPS, &list)
+            .buffer_part(POLYNOMIALS, polynomials, offset, bytes)
             .push(&params)
             .dispatch(line(params.count));
     }

@@ -1,14 +1,15 @@
 //! All fits of a scene, batch after batch: neighbours, and then the polynomials over them.
 
 use super::BuildError;
-use super::fit::{FitPolynomials, FitPolynomialsIo};
+use super::fit::{FitPolynomialsIo, fit_module, record_fits};
 use super::search::{BATCH, Search, SearchSpace};
 use super::shapes::{ShapesIo, write_shapes};
 use super::smooth::SmoothSizes;
 use super::work::Work;
 use crate::{Cloud, NeighborSearch, Rims, Shapes, SlotRange, Watch};
-use gpu::{Buffer, Device, GpuError, Kernel};
+use gpu::{Buffer, Device, GpuError};
 use kernels::layout::{FitOutcome, FitParams, Rim};
+use kernels::spirv::{Lists, Module};
 use std::sync::Arc;
 
 /// The buffers by slot are bound from multiples of so many, which begin where a part of a buffer may.
@@ -39,7 +40,7 @@ pub(crate) fn fit_all(
     let count = cloud.points.len() as u64;
     let any_smoothed = fits.iter().any(is_smoothed);
     let any_rims = fits.iter().any(|fit| fit.rim_limit > 0.0);
-    let texels = count <= u64::from(device.limits().max_texel_buffer_elements);
+    let lists = lists_of(device, count);
     let of = |asked: bool, count: u64| if asked { count } else { 1 };
     let batch_rims = of(any_rims, count.min(u64::from(BATCH))) * size_of::<Rim>() as u64;
     let outcome_bytes = count * size_of::<FitOutcome>() as u64;
@@ -50,9 +51,9 @@ pub(crate) fn fit_all(
         batch_rims: Buffer::new(device, "rims", batch_rims)?,
         rims: Rims::default(),
         searched_on_host: 0,
-        fit: FitPolynomials::new(device, texels)?,
-        search: Search::new(device, texels)?,
-        smooth: SmoothSizes::new(device, of(any_smoothed, count), texels)?,
+        lists,
+        search: Search::new(device, lists),
+        smooth: SmoothSizes::new(device, of(any_smoothed, count), lists)?,
     };
     watch.stage("fitting surfaces", count);
     for fit in fits.iter().filter(|fit| fit.point_count > 0) {
@@ -69,16 +70,18 @@ pub(crate) fn fit_all(
     Ok(Fitted { outcomes, outcome_buffer, rims, searched_on_host })
 }
 
-/// The kernels that a build with so many neighbours begins with, those first that take longest to compile; so that
-/// their pipelines can be [made ahead](Kernel::make_ahead), while points are still being read.
-///
-/// # Errors
-/// A device that is too small for a kernel.
-pub fn kernels_of_fits(device: &Arc<Device>, neighbors: u32) -> Result<Vec<Kernel>, GpuError> {
-    let fit = FitPolynomials::new(device, true)?;
-    let mut kernels = vec![fit.kernel(neighbors).clone()];
-    kernels.extend(Search::new(device, true)?.kernels(neighbors));
-    Ok(kernels)
+/// The modules that a build with so many neighbours begins with, those first that take longest to compile; so that
+/// their pipelines can be [made ahead](gpu::Kernel::make_ahead), while points are still being read.
+#[must_use]
+pub fn modules_of_fits(device: &Arc<Device>, neighbors: u32) -> Vec<&'static Module> {
+    let search = Search::new(device, Lists::Texels).modules(neighbors);
+    [vec![fit_module(Lists::Texels, neighbors)], search].concat()
+}
+
+/// How a device's kernels read lists of so many texels.
+pub(super) fn lists_of(device: &Device, texels: u64) -> Lists {
+    let fits = texels <= u64::from(device.limits().max_texel_buffer_elements);
+    if fits { Lists::Texels } else { Lists::Storage }
 }
 
 /// The k nearest others of each point of a cloud among those of its object, nearest first, `NONE` behind the
@@ -92,9 +95,9 @@ pub fn nearest_others(
     k: u32,
 ) -> Result<(Vec<u32>, u64), GpuError> {
     let count = cloud.points.len() as u64;
-    let texels = count <= u64::from(device.limits().max_texel_buffer_elements);
+    let lists = lists_of(device, count);
     let points = Buffer::paged_from_slice(device, "points", &cloud.points)?;
-    let search = Search::new(device, texels)?;
+    let search = Search::new(device, lists);
     let mut recorder = Work::new(device)?;
     let mut all = Vec::new();
     let mut on_host = 0;
@@ -128,7 +131,7 @@ struct Fitting {
     batch_rims: Buffer,
     rims: Rims,
     searched_on_host: u64,
-    fit: FitPolynomials,
+    lists: Lists,
     search: Search,
     smooth: SmoothSizes,
 }
@@ -184,7 +187,7 @@ impl Fitting {
                     sizes: &self.sizes,
                     rims: &self.batch_rims,
                 };
-                self.fit.record(rec, io, &params);
+                record_fits(rec, self.lists, io, &params);
                 rec.submit()?;
                 if fit.rim_limit > 0.0 {
                     self.read_rims(first_slot, batch[1], &space)?;

@@ -12,13 +12,12 @@ use super::{
 };
 use crate::BALL_MARGIN;
 use bytemuck::Zeroable;
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Texel};
+use gpu::{Buffer, Device, GpuError};
 use kernels::layout::{
-    GRID_BALLS, GRID_CELLS, GRID_INFO, GRID_KEYS, GRID_LARGE, GRID_OFFSETS, GRID_ORDER,
-    GRID_POLYNOMIALS, GRID_SLOTS, GridLevel, GridParams, ListedPoint, OFFSETS_INFO, OFFSETS_KEYS,
-    OFFSETS_OUT, OFFSETS_POINTS, OFFSETS_POLYNOMIALS, OFFSETS_SLOTS,
+    CELL_OFFSETS, CELLS, GRID_BALLS, GRID_INFO, GRID_KEYS, GRID_LARGE, GRID_OFFSETS, GRID_ORDER,
+    GRID_SLOTS, GridLevel, GridParams, LISTED_POINTS, ListedPoint, POLYNOMIALS,
 };
-use kernels::spirv;
+use kernels::spirv::{self, Lists, Module};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -81,97 +80,27 @@ pub(crate) struct GridLists {
 
 pub(crate) struct GridBuild {
     device: Arc<Device>,
-    order: Kernel,
-    count: Kernel,
-    emit: Kernel,
-    emit_large: Kernel,
-    ranges: Kernel,
-    offsets: Kernel,
-    list_points: Kernel,
-    scan: Scan,
-    sort: Sort,
+    /// How polynomials and balls are read.
+    lists: Lists,
     /// Pairs of one slab, at most, unless it is a single layer.
     slab_pairs: u32,
 }
 
 impl GridBuild {
-    /// `texels`: polynomials are read through a texel buffer. For `slab_pairs` at most sorted in one go.
-    pub fn new(device: &Arc<Device>, texels: bool, slab_pairs: u32) -> Result<Self, GpuError> {
-        let storage = |used: &[u32]| -> Vec<_> {
-            used.iter().map(|&at| (at, Binding::StorageBuffer)).collect()
-        };
-        let texels_read = match texels {
-            true => Binding::UniformTexelBuffer(Texel::Four),
-            false => Binding::StorageBuffer,
-        };
-        let kernel = |name, modules: [fn() -> Vec<u32>; 2], read: u32, others: &[u32]| {
-            let bindings = [&[(read, texels_read)], &storage(others)[..]].concat();
-            Self::listing(device, name, &modules[usize::from(texels)](), &bindings)
-        };
-        let emitted = [GRID_INFO, GRID_ORDER, GRID_OFFSETS, GRID_KEYS, GRID_SLOTS];
-        Ok(Self {
-            device: Arc::clone(device),
-            order: kernel(
-                "order_balls",
-                [spirv::order_balls, spirv::order_balls_texels],
-                GRID_POLYNOMIALS,
-                &[GRID_ORDER, GRID_BALLS],
-            )?,
-            count: kernel(
-                "grid_count",
-                [spirv::grid_count, spirv::grid_count_texels],
-                GRID_BALLS,
-                &[GRID_INFO, GRID_OFFSETS, GRID_LARGE],
-            )?,
-            emit: kernel(
-                "grid_emit",
-                [spirv::grid_emit, spirv::grid_emit_texels],
-                GRID_BALLS,
-                &emitted,
-            )?,
-            emit_large: kernel(
-                "grid_emit_large",
-                [spirv::grid_emit_large, spirv::grid_emit_large_texels],
-                GRID_BALLS,
-                &[&emitted[..], &[GRID_LARGE]].concat(),
-            )?,
-            ranges: Self::listing(
-                device,
-                "grid_ranges",
-                &spirv::grid_ranges(),
-                &storage(&[GRID_INFO, GRID_KEYS, GRID_CELLS]),
-            )?,
-            offsets: Self::listing(
-                device,
-                "cell_offsets",
-                &spirv::cell_offsets(),
-                &storage(&[OFFSETS_INFO, OFFSETS_KEYS, OFFSETS_OUT]),
-            )?,
-            list_points: kernel(
-                "list_points",
-                [spirv::list_points, spirv::list_points_texels],
-                OFFSETS_POLYNOMIALS,
-                &[OFFSETS_SLOTS, OFFSETS_POINTS],
-            )?,
-            scan: Scan::new(device)?,
-            sort: Sort::new(device)?,
-            slab_pairs,
-        })
-    }
-
-    fn listing(
-        device: &Arc<Device>,
-        name: &'static str,
-        module: &[u32],
-        bindings: &[(u32, Binding)],
-    ) -> Result<Kernel, GpuError> {
-        Kernel::new(device, name, module, bindings, size_of::<GridParams>())
+    /// `lists`: how polynomials are read. For `slab_pairs` at most sorted in one go.
+    pub fn new(device: &Arc<Device>, lists: Lists, slab_pairs: u32) -> Self {
+        Self { device: Arc::clone(device), lists, slab_pairs }
     }
 
     /// What every list of balls takes.
-    pub fn kernels(&self) -> Vec<Kernel> {
-        let own = [&self.order, &self.count, &self.emit, &self.ranges].into_iter().cloned();
-        own.chain(self.scan.kernels()).chain(self.sort.kernels()).collect()
+    pub fn modules(lists: Lists) -> Vec<&'static Module> {
+        let own = [
+            spirv::order_balls(lists),
+            spirv::grid_count(lists),
+            spirv::grid_emit(lists),
+            spirv::grid_ranges(),
+        ];
+        [&own[..], &Scan::modules(), &Sort::modules()].concat()
     }
 
     /// Where nobody asks for them: something to bind, which is not read.
@@ -254,21 +183,21 @@ impl GridBuild {
             let pairs = self.sorted_pairs(rec, io, counting, whole, 0.0)?;
             let params = GridParams { first_pair, ..whole.params(io, 0.0) };
             let entries = entries(&io.level);
-            rec.pass("cell_offsets", &self.offsets)
-                .buffer(OFFSETS_INFO, &io.grid_info)
-                .buffer(OFFSETS_KEYS, &pairs.keys)
+            rec.pass(spirv::cell_offsets())
+                .buffer(GRID_INFO, &io.grid_info)
+                .buffer(GRID_KEYS, &pairs.keys)
                 .buffer_part(
-                    OFFSETS_OUT,
+                    CELL_OFFSETS,
                     &offsets,
                     u64::from(io.level.first_offset) * 4,
                     entries * 4,
                 )
                 .push(&params)
                 .dispatch(line(entries as u32));
-            rec.pass("list_points", &self.list_points)
-                .buffer(OFFSETS_SLOTS, &pairs.slots)
-                .buffer(OFFSETS_POLYNOMIALS, io.polynomials)
-                .buffer(OFFSETS_POINTS, &points)
+            rec.pass(spirv::list_points(self.lists))
+                .buffer(GRID_SLOTS, &pairs.slots)
+                .buffer(POLYNOMIALS, io.polynomials)
+                .buffer(LISTED_POINTS, &points)
                 .push(&params)
                 .dispatch(line(whole.pairs));
             rec.submit()?;
@@ -310,8 +239,8 @@ impl GridBuild {
             let point_count = BALLS_AT_ONCE.min(points - first_pair);
             let [at, bytes] =
                 [first_pair, point_count].map(|points| u64::from(points) * BALL_BYTES);
-            rec.pass("order_balls", &self.order)
-                .buffer(GRID_POLYNOMIALS, io.polynomials)
+            rec.pass(spirv::order_balls(self.lists))
+                .buffer(POLYNOMIALS, io.polynomials)
                 .buffer(GRID_ORDER, &counting.order)
                 .buffer_part(GRID_BALLS, &counting.balls, at, bytes)
                 .push(&GridParams { point_count, first_pair, ..GridParams::zeroed() })
@@ -337,16 +266,16 @@ impl GridBuild {
         if io.any_large {
             rec.fill(large_offsets, end, 4, 0);
         }
-        rec.pass("grid_count", &self.count)
+        rec.pass(spirv::grid_count(self.lists))
             .buffer(GRID_INFO, &io.grid_info)
             .buffer(GRID_BALLS, balls)
             .buffer(GRID_OFFSETS, offsets)
             .buffer(GRID_LARGE, large_offsets)
             .push(&slab.params(io, ball_scale))
             .dispatch(line(points));
-        self.scan.record(rec, offsets, points + 1, levels);
+        Scan::record(rec, offsets, points + 1, levels);
         if io.any_large {
-            self.scan.record(rec, large_offsets, points + 1, levels);
+            Scan::record(rec, large_offsets, points + 1, levels);
         }
         rec.submit()?;
         let mut totals = [[0u32]; 2];
@@ -372,7 +301,7 @@ impl GridBuild {
         let mut pairs = Pairs::new(device, slab.pairs)?;
         let mut space = SortSpace::new(device, slab.pairs)?;
         let params = slab.params(io, ball_scale);
-        rec.pass("grid_emit", &self.emit)
+        rec.pass(spirv::grid_emit(self.lists))
             .buffer(GRID_INFO, &io.grid_info)
             .buffer(GRID_BALLS, &counting.balls)
             .buffer(GRID_ORDER, &counting.order)
@@ -382,7 +311,7 @@ impl GridBuild {
             .push(&params)
             .dispatch(line(params.point_count));
         if slab.large_pairs > 0 {
-            rec.pass("grid_emit_large", &self.emit_large)
+            rec.pass(spirv::grid_emit_large(self.lists))
                 .buffer(GRID_INFO, &io.grid_info)
                 .buffer(GRID_BALLS, &counting.balls)
                 .buffer(GRID_ORDER, &counting.order)
@@ -395,7 +324,7 @@ impl GridBuild {
         }
         let [x, y, _] = io.level.grid.resolution;
         let largest = x * y * (slab.end_layer - slab.first_layer);
-        self.sort.record(rec, &self.scan, &mut pairs, &mut space, slab.pairs, largest);
+        Sort::record(rec, &mut pairs, &mut space, slab.pairs, largest);
         Ok(pairs)
     }
 
@@ -409,10 +338,10 @@ impl GridBuild {
         cells: &Buffer,
     ) {
         let first = u64::from(io.level.first_cell);
-        rec.pass("grid_ranges", &self.ranges)
+        rec.pass(spirv::grid_ranges())
             .buffer(GRID_INFO, &io.grid_info)
             .buffer(GRID_KEYS, &pairs.keys)
-            .buffer_part(GRID_CELLS, cells, first * 8, u64::from(io.level.grid.cell_count()) * 8)
+            .buffer_part(CELLS, cells, first * 8, u64::from(io.level.grid.cell_count()) * 8)
             .push(&GridParams { first_pair, ..slab.params(io, BALL_MARGIN) })
             .dispatch(line(slab.pairs));
     }

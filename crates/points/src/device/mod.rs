@@ -16,17 +16,18 @@ mod sort;
 mod tree;
 mod work;
 
-pub use fitting::{kernels_of_fits, nearest_others};
+pub use fitting::{modules_of_fits, nearest_others};
 pub use scan::Scan;
-pub use shapes::kernels_of_shapes;
+pub use shapes::modules_of_shapes;
 pub use sort::{Pairs, Sort, SortSpace};
 pub use tree::Tree;
 
 use crate::{Cloud, Grids, Shapes, Watch, plan_grids};
-use fitting::{Fitted, fit_all};
-use gpu::{Buffer, Device, GpuError, Kernel};
+use fitting::{Fitted, fit_all, lists_of};
+use gpu::{Buffer, Device, GpuError};
 use grid_build::{GridBuild, GridBuildIo, LISTED_POINT_BYTES, slab_pairs};
 use kernels::layout::{FitOutcome, FitParams, GridLevel, LINE_ROW, Point, Polynomial};
+use kernels::spirv::{Lists, Module};
 use std::sync::Arc;
 use work::Work;
 
@@ -157,22 +158,17 @@ pub struct Needed {
     pub point_cells: bool,
 }
 
-/// The kernels of tree and grid that a build asks for after the fits, to be [made ahead](Kernel::make_ahead).
-///
-/// # Errors
-/// A device that is too small for a kernel.
-pub fn kernels_of_structures(
-    device: &Arc<Device>,
-    needed: Needed,
-) -> Result<Vec<Kernel>, GpuError> {
-    let mut kernels = Vec::new();
+/// The modules of tree and grid that a build asks for after the fits, to be [made ahead](gpu::Kernel::make_ahead).
+#[must_use]
+pub fn modules_of_structures(needed: Needed) -> Vec<&'static Module> {
+    let mut modules = Vec::new();
     if needed.tree {
-        kernels.extend(Tree::kernels(device)?);
+        modules.extend(Tree::modules());
     }
     if needed.lists || !needed.tree {
-        kernels.extend(GridBuild::new(device, true, 0)?.kernels());
+        modules.extend(GridBuild::modules(Lists::Texels));
     }
-    Ok(kernels)
+    modules
 }
 
 impl Surfaces {
@@ -208,7 +204,7 @@ impl Surfaces {
             false => Buffer::new(device, "fit outcomes", size_of::<FitOutcome>() as u64)?,
         };
         watch.stage("building the grid", 4);
-        let texels = bytes / 16 <= u64::from(device.limits().max_texel_buffer_elements);
+        let lists = lists_of(device, bytes / 16);
         let count = cloud.points.len() as u32;
         let may_have_tree = needed.tree && Tree::fits(device, count);
         let looks = needed.lists || refines || !may_have_tree;
@@ -218,7 +214,7 @@ impl Surfaces {
         };
         let slab_pairs = slab_pairs(memory.points, heap.saturating_sub(memory.kept()));
         watch.done(1);
-        let build = GridBuild::new(device, texels, slab_pairs)?;
+        let build = GridBuild::new(device, lists, slab_pairs);
         let widest = outcomes.iter().map(|outcome| outcome.trust).fold(0.0, f32::max);
         let io = |(at, level): (usize, &GridLevel)| -> Result<GridBuildIo<'_>, GpuError> {
             Ok(GridBuildIo {

@@ -16,17 +16,15 @@ use super::line;
 use super::work::Work;
 use crate::neighbors::nearest_of_few;
 use crate::{NeighborSearch, SlotRange};
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Texel};
+use gpu::{Buffer, Device, GpuError};
 use kernels::layout::{
-    LEAF_LEVELS, LEAF_POINTS, LevelParams, NONE, Point, SEARCH_BOUNDS, SEARCH_COUNTS,
-    SEARCH_GROUPS, SEARCH_LEAVES, SEARCH_LISTS, SEARCH_NODES, SEARCH_POINTS, SEARCH_TIES,
-    SearchNode, SearchParams,
+    LEAF_LEVELS, LEAF_POINTS, LevelParams, NEIGHBORS, NONE, POINTS, Point, SEARCH_BOUNDS,
+    SEARCH_COUNTS, SEARCH_GROUPS, SEARCH_LEAVES, SEARCH_NODES, SEARCH_TIES, SearchNode,
+    SearchParams,
 };
-use kernels::spirv;
+use kernels::spirv::{self, Finding, Lists, Module, Neighbors};
 use std::sync::Arc;
 
-/// Label and row of the timing table.
-const FIND: &str = "find_neighbors";
 /// Of so many leaves with ties one, and all are taken to have some: lattices and terrains.
 const TIED_SHARE: usize = 16;
 /// Neighbours that the smaller kernels find, at most.
@@ -44,16 +42,10 @@ const LARGE_GROUPS: u32 = 256;
 /// Leaves of a batch that the host searches without a tree.
 const WITHOUT_TREE: usize = 64;
 
-/// The pipelines.
+/// How the kernels read points.
 pub(crate) struct Search {
     device: Arc<Device>,
-    leaf_boxes: Kernel,
-    node_boxes: Kernel,
-    bound: [Kernel; 2],
-    gather: Kernel,
-    find: [Kernel; 2],
-    /// The first of these where no two others are equally far; texels alone.
-    find_untied: Option<Kernel>,
+    lists: Lists,
 }
 
 /// The boxes around one object's points.
@@ -84,68 +76,9 @@ pub(crate) struct SearchSpace {
 }
 
 impl Search {
-    /// `texels`: points and boxes are read through texel buffers.
-    pub fn new(device: &Arc<Device>, texels: bool) -> Result<Self, GpuError> {
-        let read =
-            if texels { Binding::UniformTexelBuffer(Texel::Four) } else { Binding::StorageBuffer };
-        let kernel = |name, module: &[u32], bindings: &[(u32, Binding)], params| {
-            Kernel::new(device, name, module, bindings, params)
-        };
-        let storage = |at| (at, Binding::StorageBuffer);
-        let bound = |module: &[u32]| {
-            let bindings = [(SEARCH_POINTS, read), storage(SEARCH_BOUNDS)];
-            kernel("bound_reach", module, &bindings, size_of::<SearchParams>())
-        };
-        let finding = [
-            (SEARCH_POINTS, read),
-            (SEARCH_LEAVES, read),
-            storage(SEARCH_BOUNDS),
-            storage(SEARCH_COUNTS),
-            storage(SEARCH_LISTS),
-            storage(SEARCH_GROUPS),
-            storage(SEARCH_TIES),
-        ];
-        let params = size_of::<SearchParams>();
-        let find = |module: &[u32]| kernel(FIND, module, &finding[..6], params);
-        let untied = |module: &[u32]| kernel(FIND, module, &finding, params);
-        let boxes = [(SEARCH_POINTS, read), storage(SEARCH_NODES)];
-        let gather = [
-            (SEARCH_POINTS, read),
-            (SEARCH_NODES, read),
-            storage(SEARCH_BOUNDS),
-            storage(SEARCH_LEAVES),
-            storage(SEARCH_COUNTS),
-            storage(SEARCH_GROUPS),
-        ];
-        let modules = |texels_few: Vec<u32>, texels_many, many| match texels {
-            true => [texels_few, texels_many],
-            false => [Vec::clone(&many), many],
-        };
-        let bounds = modules(
-            spirv::bound_reach_texels_few(),
-            spirv::bound_reach_texels(),
-            spirv::bound_reach(),
-        );
-        let finds = modules(
-            spirv::find_neighbors_texels_few(),
-            spirv::find_neighbors_texels(),
-            spirv::find_neighbors(),
-        );
-        let gathers = if texels { spirv::gather_leaves_texels() } else { spirv::gather_leaves() };
-        let leaf_boxes = if texels { spirv::leaf_boxes_texels() } else { spirv::leaf_boxes() };
-        let level = size_of::<LevelParams>();
-        Ok(Self {
-            device: Arc::clone(device),
-            leaf_boxes: kernel("leaf_boxes", &leaf_boxes, &boxes, level)?,
-            node_boxes: kernel("node_boxes", &spirv::node_boxes(), &boxes[1..], level)?,
-            bound: [bound(&bounds[0])?, bound(&bounds[1])?],
-            gather: kernel("gather_leaves", &gathers, &gather, size_of::<SearchParams>())?,
-            find: [find(&finds[0])?, find(&finds[1])?],
-            find_untied: match texels {
-                true => Some(untied(&spirv::find_neighbors_untied())?),
-                false => None,
-            },
-        })
+    /// `lists`: how points and boxes are read.
+    pub fn new(device: &Arc<Device>, lists: Lists) -> Self {
+        Self { device: Arc::clone(device), lists }
     }
 
     /// How many points are searched for in one go, at most, where each has so many neighbours: whole leaves.
@@ -153,16 +86,41 @@ impl Search {
         BATCH * MANY / neighbors.max(MANY) / LEAF_POINTS * LEAF_POINTS
     }
 
-    /// What searches of so many neighbours take.
-    pub fn kernels(&self, neighbors: u32) -> Vec<Kernel> {
+    /// What searches of so many neighbours take, those first that take longest to compile.
+    pub fn modules(&self, neighbors: u32) -> Vec<&'static Module> {
         if neighbors > MANY {
             return Vec::new();
         }
-        let many = usize::from(neighbors > FEW);
-        let untied = self.find_untied.iter().filter(|_| many == 0);
-        let others = [&self.find[many], &self.gather, &self.bound[many]];
-        let boxes = [&self.leaf_boxes, &self.node_boxes];
-        untied.chain(others).chain(boxes).cloned().collect()
+        let others = [
+            self.find_module(neighbors),
+            spirv::gather_leaves(self.lists),
+            self.bound_module(neighbors),
+            spirv::leaf_boxes(self.lists),
+            spirv::node_boxes(),
+        ];
+        self.untied_module(neighbors).into_iter().chain(others).collect()
+    }
+
+    fn bound_module(&self, neighbors: u32) -> &'static Module {
+        spirv::bound_reach(match self.lists {
+            Lists::Storage => Neighbors::Storage,
+            Lists::Texels if neighbors > FEW => Neighbors::Texels,
+            Lists::Texels => Neighbors::Few,
+        })
+    }
+
+    fn find_module(&self, neighbors: u32) -> &'static Module {
+        spirv::find_neighbors(match self.lists {
+            Lists::Storage => Finding::Storage,
+            Lists::Texels if neighbors > FEW => Finding::Texels,
+            Lists::Texels => Finding::Few,
+        })
+    }
+
+    /// The same where no two others are equally far; with texels only, and few neighbours.
+    fn untied_module(&self, neighbors: u32) -> Option<&'static Module> {
+        let has_one = self.lists == Lists::Texels && neighbors <= FEW;
+        has_one.then(|| spirv::find_neighbors(Finding::Untied))
     }
 
     /// Records the boxes around the points of one object, whose lists will have at most `neighbors` entries.
@@ -198,13 +156,13 @@ impl Search {
                 offsets,
             };
             if level == 0 {
-                rec.pass("leaf_boxes", &self.leaf_boxes)
-                    .buffer(SEARCH_POINTS, points)
+                rec.pass(spirv::leaf_boxes(self.lists))
+                    .buffer(POINTS, points)
                     .buffer(SEARCH_NODES, &nodes)
                     .push(&params)
                     .dispatch(line(count));
             } else {
-                rec.pass("node_boxes", &self.node_boxes)
+                rec.pass(spirv::node_boxes())
                     .buffer(SEARCH_NODES, &nodes)
                     .push(&params)
                     .dispatch(line(count));
@@ -271,23 +229,23 @@ impl Search {
             let bytes = u64::from(count) * u64::from(space.stride) * 4;
             rec.fill(&space.lists, 0, bytes, NONE);
         }
-        rec.pass("bound_reach", &self.bound[usize::from(space.neighbors > FEW)])
-            .buffer(SEARCH_POINTS, points)
+        rec.pass(self.bound_module(space.neighbors))
+            .buffer(POINTS, points)
             .buffer(SEARCH_BOUNDS, &space.bounds)
             .push(&params)
             .dispatch(line(count));
         let groups = count.div_ceil(LEAF_POINTS);
         let all = [&space.leaves, &space.counts];
         self.record_gather(rec, points, boxes, space, all, &params);
-        let untied = self.find_untied.as_ref().filter(|_| space.neighbors <= FEW && !space.tied);
+        let untied = self.untied_module(space.neighbors).filter(|_| !space.tied);
         if let Some(untied) = untied {
             rec.fill(&space.ties, 0, u64::from(groups) * 4, 0);
-            rec.pass(FIND, untied)
-                .buffer(SEARCH_POINTS, points)
+            rec.pass(untied)
+                .buffer(POINTS, points)
                 .buffer(SEARCH_BOUNDS, &space.bounds)
                 .buffer(SEARCH_LEAVES, &space.leaves)
                 .buffer(SEARCH_COUNTS, &space.counts)
-                .buffer(SEARCH_LISTS, &space.lists)
+                .buffer(NEIGHBORS, &space.lists)
                 .buffer(SEARCH_GROUPS, &space.groups)
                 .buffer(SEARCH_TIES, &space.ties)
                 .push(&params)
@@ -336,8 +294,8 @@ impl Search {
         [leaves, counts]: [&Buffer; 2],
         params: &SearchParams,
     ) {
-        rec.pass("gather_leaves", &self.gather)
-            .buffer(SEARCH_POINTS, points)
+        rec.pass(spirv::gather_leaves(self.lists))
+            .buffer(POINTS, points)
             .buffer(SEARCH_NODES, &boxes.nodes)
             .buffer(SEARCH_BOUNDS, &space.bounds)
             .buffer(SEARCH_LEAVES, leaves)
@@ -355,12 +313,12 @@ impl Search {
         [leaves, counts]: [&Buffer; 2],
         params: &SearchParams,
     ) {
-        rec.pass(FIND, &self.find[usize::from(space.neighbors > FEW)])
-            .buffer(SEARCH_POINTS, points)
+        rec.pass(self.find_module(space.neighbors))
+            .buffer(POINTS, points)
             .buffer(SEARCH_BOUNDS, &space.bounds)
             .buffer(SEARCH_LEAVES, leaves)
             .buffer(SEARCH_COUNTS, counts)
-            .buffer(SEARCH_LISTS, &space.lists)
+            .buffer(NEIGHBORS, &space.lists)
             .buffer(SEARCH_GROUPS, &space.groups)
             .push(params)
             .dispatch(line(groups_of(params) * LEAF_POINTS));

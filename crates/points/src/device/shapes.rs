@@ -3,12 +3,11 @@
 use super::line;
 use super::work::Work;
 use crate::{ShapeKind, Shapes};
-use gpu::{Binding, Buffer, Device, GpuError, Kernel};
+use gpu::{Buffer, Device, GpuError};
 use kernels::layout::{
-    FitOutcome, Point, Polynomial, SHAPE_NORMALS, SHAPE_OUTCOMES, SHAPE_POINTS, SHAPE_POLYNOMIALS,
-    SHAPE_RADII, ShapeParams,
+    FitOutcome, NORMALS, OUTCOMES, POINTS, POLYNOMIALS, Point, Polynomial, RADII, ShapeParams,
 };
-use kernels::spirv;
+use kernels::spirv::{self, Module};
 use std::sync::Arc;
 
 /// Shapes of one dispatch.
@@ -31,57 +30,31 @@ pub(crate) fn write_shapes(
     all: &[Shapes],
 ) -> Result<(), GpuError> {
     for kind in [ShapeKind::Sphere, ShapeKind::Disc] {
-        let own = || all.iter().filter(|shapes| shapes.kind == kind && shapes.count > 0);
-        if own().next().is_some() {
-            let kernel = kernel_of(device, kind)?;
-            for shapes in own() {
-                write_batches(device, rec, &kernel, io, shapes)?;
-            }
+        for shapes in all.iter().filter(|shapes| shapes.kind == kind && shapes.count > 0) {
+            write_batches(device, rec, io, shapes)?;
         }
     }
     Ok(())
 }
 
-/// The kernels that these shapes take, to be [made ahead](Kernel::make_ahead).
-///
-/// # Errors
-/// A device that is too small for a kernel.
-pub fn kernels_of_shapes(device: &Arc<Device>, all: &[Shapes]) -> Result<Vec<Kernel>, GpuError> {
+/// The modules that these shapes take, to be [made ahead](gpu::Kernel::make_ahead).
+#[must_use]
+pub fn modules_of_shapes(all: &[Shapes]) -> Vec<&'static Module> {
     let kinds = [ShapeKind::Sphere, ShapeKind::Disc];
     let any = |kind: &ShapeKind| all.iter().any(|shapes| shapes.kind == *kind && shapes.count > 0);
-    kinds.into_iter().filter(any).map(|kind| kernel_of(device, kind)).collect()
+    kinds.into_iter().filter(any).map(module_of).collect()
 }
 
-fn kernel_of(device: &Arc<Device>, kind: ShapeKind) -> Result<Kernel, GpuError> {
-    let bindings =
-        [SHAPE_POINTS, SHAPE_RADII, SHAPE_POLYNOMIALS, SHAPE_OUTCOMES, SHAPE_NORMALS].map(storage);
-    let params = size_of::<ShapeParams>();
+fn module_of(kind: ShapeKind) -> &'static Module {
     match kind {
-        ShapeKind::Sphere => {
-            Kernel::new(device, name_of(kind), &spirv::shape_spheres(), &bindings[..4], params)
-        }
-        ShapeKind::Disc => {
-            Kernel::new(device, name_of(kind), &spirv::shape_discs(), &bindings, params)
-        }
-    }
-}
-
-fn storage(at: u32) -> (u32, Binding) {
-    (at, Binding::StorageBuffer)
-}
-
-/// Label and row of the timing table.
-fn name_of(kind: ShapeKind) -> &'static str {
-    match kind {
-        ShapeKind::Sphere => "shape_spheres",
-        ShapeKind::Disc => "shape_discs",
+        ShapeKind::Sphere => spirv::shape_spheres(),
+        ShapeKind::Disc => spirv::shape_discs(),
     }
 }
 
 fn write_batches(
     device: &Arc<Device>,
     rec: &mut Work,
-    kernel: &Kernel,
     io: &ShapesIo<'_>,
     shapes: &Shapes,
 ) -> Result<(), GpuError> {
@@ -110,14 +83,14 @@ fn write_batches(
             has_normals: u32::from(normals.is_some()),
         };
         let mut pass = rec
-            .pass(name_of(shapes.kind), kernel)
-            .buffer_part(SHAPE_POINTS, io.points, points[0], points[1])
-            .buffer(SHAPE_RADII, &radii)
-            .buffer_part(SHAPE_POLYNOMIALS, io.polynomials, polynomials[0], polynomials[1])
-            .buffer_part(SHAPE_OUTCOMES, io.outcomes, outcomes[0], outcomes[1]);
+            .pass(module_of(shapes.kind))
+            .buffer_part(POINTS, io.points, points[0], points[1])
+            .buffer(RADII, &radii)
+            .buffer_part(POLYNOMIALS, io.polynomials, polynomials[0], polynomials[1])
+            .buffer_part(OUTCOMES, io.outcomes, outcomes[0], outcomes[1]);
         if shapes.kind == ShapeKind::Disc {
             // Without normals, nothing is read of these.
-            pass = pass.buffer(SHAPE_NORMALS, normals.as_ref().unwrap_or(&radii));
+            pass = pass.buffer(NORMALS, normals.as_ref().unwrap_or(&radii));
         }
         pass.push(&params).dispatch(line(count));
         rec.submit()?;

@@ -3,9 +3,9 @@
 
 use super::line;
 use super::work::Work;
-use gpu::{Binding, Buffer, Device, GpuError, Kernel};
+use gpu::{Buffer, Device, GpuError};
 use kernels::layout::{
-    GRID_CELLS, GRID_INFO, GridLevel, MOST_SKIPPED, SKIP_BESIDE, SKIP_FAR, SKIP_MARKS_IN,
+    CELLS, GRID_INFO, GridLevel, MOST_SKIPPED, SKIP_BESIDE, SKIP_FAR, SKIP_MARKS_IN,
     SKIP_MARKS_OUT, SKIP_NEAR, SKIP_OCCUPIED,
 };
 use kernels::spirv;
@@ -19,19 +19,6 @@ pub(crate) fn skip_cells(
     grid_info: &Buffer,
     cells: &Buffer,
 ) -> Result<(), GpuError> {
-    let kernel = |name, module: &[u32], bindings: &[u32]| {
-        let bindings: Vec<_> = bindings.iter().map(|&at| (at, Binding::StorageBuffer)).collect();
-        Kernel::new(device, name, module, &bindings, 0)
-    };
-    let occupied =
-        kernel("mark_occupied", &spirv::mark_occupied(), &[GRID_INFO, GRID_CELLS, SKIP_MARKS_OUT])?;
-    let grow =
-        kernel("grow_marks", &spirv::grow_marks(), &[GRID_INFO, SKIP_MARKS_IN, SKIP_MARKS_OUT])?;
-    let skip = kernel(
-        "skip_cells",
-        &spirv::skip_cells(),
-        &[GRID_INFO, GRID_CELLS, SKIP_OCCUPIED, SKIP_BESIDE, SKIP_NEAR, SKIP_FAR],
-    )?;
     let [width, height, depth] = level.grid.resolution;
     let first = u64::from(level.first_cell) * 8;
     let bytes = u64::from(level.grid.cell_count()) * 8;
@@ -39,13 +26,13 @@ pub(crate) fn skip_cells(
     let marks: Vec<Buffer> = (0..MOST_SKIPPED)
         .map(|_| Buffer::new(device, "marks of cells", u64::from(words) * 4))
         .collect::<Result<_, _>>()?;
-    rec.pass("mark_occupied", &occupied)
+    rec.pass(spirv::mark_occupied())
         .buffer(GRID_INFO, grid_info)
-        .buffer_part(GRID_CELLS, cells, first, bytes)
+        .buffer_part(CELLS, cells, first, bytes)
         .buffer(SKIP_MARKS_OUT, &marks[0])
         .dispatch(line(words));
     for grown in marks.windows(2) {
-        rec.pass("grow_marks", &grow)
+        rec.pass(spirv::grow_marks())
             .buffer(GRID_INFO, grid_info)
             .buffer(SKIP_MARKS_IN, &grown[0])
             .buffer(SKIP_MARKS_OUT, &grown[1])
@@ -53,9 +40,9 @@ pub(crate) fn skip_cells(
     }
     let bindings = [SKIP_OCCUPIED, SKIP_BESIDE, SKIP_NEAR, SKIP_FAR];
     let pass = rec
-        .pass("skip_cells", &skip)
+        .pass(spirv::skip_cells())
         .buffer(GRID_INFO, grid_info)
-        .buffer_part(GRID_CELLS, cells, first, bytes);
+        .buffer_part(CELLS, cells, first, bytes);
     let pass =
         bindings.into_iter().zip(&marks).fold(pass, |pass, (at, marks)| pass.buffer(at, marks));
     pass.dispatch(line(words));

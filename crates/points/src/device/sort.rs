@@ -2,12 +2,12 @@
 //! `sort_scatter` with a scan between them.
 
 use super::{line, scan::Scan};
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, Recorder};
+use gpu::{Buffer, Device, GpuError, Recorder};
 use kernels::layout::{
     DIGIT_BITS, RUN_LENGTH, SORT_HISTOGRAM, SORT_KEYS_IN, SORT_KEYS_OUT, SORT_SLOTS_IN,
     SORT_SLOTS_OUT, SortParams,
 };
-use kernels::spirv;
+use kernels::spirv::{self, Module};
 use std::sync::Arc;
 
 /// Keys and what travels with them.
@@ -57,39 +57,19 @@ impl SortSpace {
 
 /// Sorts pairs by key.
 #[derive(Debug)]
-pub struct Sort {
-    count: Kernel,
-    scatter: Kernel,
-}
+pub struct Sort;
 
 impl Sort {
-    /// Builds the pipelines.
-    ///
-    /// # Errors
-    /// A driver that rejects a pipeline.
-    pub fn new(device: &Arc<Device>) -> Result<Self, GpuError> {
-        let all = [SORT_KEYS_IN, SORT_SLOTS_IN, SORT_HISTOGRAM, SORT_KEYS_OUT, SORT_SLOTS_OUT]
-            .map(|binding| (binding, Binding::StorageBuffer));
-        let counted = [all[0], all[2]];
-        let params = size_of::<SortParams>();
-        Ok(Self {
-            count: Kernel::new(device, "sort_count", &spirv::sort_count(), &counted, params)?,
-            scatter: Kernel::new(device, "sort_scatter", &spirv::sort_scatter(), &all, params)?,
-        })
-    }
-
     /// What it takes.
     #[must_use]
-    pub fn kernels(&self) -> [Kernel; 2] {
-        [self.count.clone(), self.scatter.clone()]
+    pub fn modules() -> [&'static Module; 2] {
+        [spirv::sort_count(), spirv::sort_scatter()]
     }
 
     /// Records the sort of the first `count` of `pairs`, whose keys are at most `largest`. The
     /// buffers of `pairs` and the space change places.
     pub fn record(
-        &self,
         rec: &mut Recorder,
-        scan: &Scan,
         pairs: &mut Pairs,
         space: &mut SortSpace,
         count: u32,
@@ -112,13 +92,13 @@ impl Sort {
         for shift in (0..key_bits).step_by(bits as usize) {
             let params = SortParams { count, shift, runs, bits };
             rec.fill(histogram, 0, u64::from(entries) * 4, 0);
-            rec.pass("sort_count", &self.count)
+            rec.pass(spirv::sort_count())
                 .buffer(SORT_KEYS_IN, &pairs.keys)
                 .buffer(SORT_HISTOGRAM, histogram)
                 .push(&params)
                 .dispatch(line(runs));
-            scan.record(rec, histogram, entries, levels);
-            rec.pass("sort_scatter", &self.scatter)
+            Scan::record(rec, histogram, entries, levels);
+            rec.pass(spirv::sort_scatter())
                 .buffer(SORT_KEYS_IN, &pairs.keys)
                 .buffer(SORT_SLOTS_IN, &pairs.slots)
                 .buffer(SORT_HISTOGRAM, histogram)

@@ -6,12 +6,12 @@
 
 use super::line;
 use super::work::Work;
-use gpu::{Binding, Buffer, Device, GpuError, Kernel, PART_ALIGNMENT, Texel};
+use gpu::{Buffer, Device, GpuError, PART_ALIGNMENT};
 use kernels::layout::{
-    LEAF_POINTS, Polynomial, SearchNode, TRACE_POLYNOMIALS, TREE_BOXES, TREE_NODES, TreeInfo,
+    LEAF_POINTS, POLYNOMIALS, Polynomial, SearchNode, TREE_BOXES, TREE_NODES, TreeInfo,
     TreeLevelParams,
 };
-use kernels::spirv;
+use kernels::spirv::{self, Children, Module};
 use std::sync::Arc;
 
 /// Bytes of a node.
@@ -91,18 +91,9 @@ impl Tree {
         self.nodes.bytes() / NODE_BYTES
     }
 
-    /// `tree_leaves` and `tree_nodes`.
-    pub(crate) fn kernels(device: &Arc<Device>) -> Result<[Kernel; 2], GpuError> {
-        let texels = (TRACE_POLYNOMIALS, Binding::UniformTexelBuffer(Texel::Four));
-        let written = [TREE_BOXES, TREE_NODES].map(|at| (at, Binding::StorageBuffer));
-        let kernel = |name, module: &[u32], bindings: &[(u32, Binding)]| {
-            Kernel::new(device, name, module, bindings, size_of::<TreeLevelParams>())
-        };
-        let of_points = [&[texels], &written[..]].concat();
-        Ok([
-            kernel("tree_leaves", &spirv::tree_leaves(), &of_points)?,
-            kernel("tree_nodes", &spirv::tree_nodes(), &written)?,
-        ])
+    /// What a build takes.
+    pub(crate) fn modules() -> [&'static Module; 2] {
+        [spirv::tree_nodes(Children::Surfaces), spirv::tree_nodes(Children::Boxes)]
     }
 
     /// Over the first `points` polynomials, which are read through a texel buffer.
@@ -117,7 +108,6 @@ impl Tree {
         levels[0].first -= info.gap;
         let nodes = Buffer::paged(device, "tree", count * NODE_BYTES)?;
         let boxes = Buffer::new(device, "tree boxes", count * size_of::<SearchNode>() as u64)?;
-        let [of_points, of_nodes] = Self::kernels(device)?;
         let mut below = Level { first: 0, count: points };
         for (height, level) in levels.iter().enumerate() {
             let end = level.end();
@@ -133,8 +123,10 @@ impl Tree {
                     first_bound,
                 };
                 let pass = match height {
-                    0 => rec.pass("tree_leaves", &of_points).buffer(TRACE_POLYNOMIALS, polynomials),
-                    _ => rec.pass("tree_nodes", &of_nodes),
+                    0 => rec
+                        .pass(spirv::tree_nodes(Children::Surfaces))
+                        .buffer(POLYNOMIALS, polynomials),
+                    _ => rec.pass(spirv::tree_nodes(Children::Boxes)),
                 };
                 let bound = [first_bound, first + count - first_bound];
                 let [from, bytes] = bound.map(|nodes| u64::from(nodes) * NODE_BYTES);

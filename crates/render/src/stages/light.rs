@@ -1,0 +1,76 @@
+//! Light at the hits of a wave: shadow rays, past surfaces between media of one index where there are some, and what
+//! surfaces make of what arrives.
+
+use crate::RenderError;
+use crate::frame::Frame;
+use crate::stats::Traced;
+use kernels::layout::{MARKS, NONE, PATHS, ShadowParams, WAVE_SHARES_PATH, WaveParams};
+use kernels::spirv;
+use points::device::line;
+
+impl Frame<'_> {
+    /// Light after light, shadow rays from a wave's lit hits, and then what their surfaces make of it. The wave's rays
+    /// are those hits.
+    pub fn shade(&mut self, params: &WaveParams) -> Result<(), RenderError> {
+        if params.ray_count == 0 || params.light_count == 0 {
+            return Ok(());
+        }
+        let (rays, invocations) = (self.rays(), line(params.ray_count));
+        let shares = params.flags & WAVE_SHARES_PATH != 0;
+        let paths = self.renderer.buffers.wave.paths_or_shared(shares).clone();
+        for light in 0..params.light_count {
+            let params = WaveParams { light, ..*params };
+            let own = self.renderer.rays.shadows.updated().buffer(PATHS, &paths);
+            self.dispatch(spirv::shadow_rays(rays), &own, &params, invocations);
+            self.renderer.rays.shadows.passed();
+            if self.plan.light_passes {
+                let own = self.renderer.rays.shadows.in_place().buffer(PATHS, &paths);
+                self.dispatch(spirv::shadow_media(rays), &own, &params, invocations);
+            }
+            self.send_to_light(params.ray_count, light, Traced::Shadows)?;
+        }
+        let own = self.renderer.rays.shadows.in_place().buffer(PATHS, &paths);
+        self.dispatch(spirv::shade(rays), &own, params, invocations);
+        self.submit(None)?;
+        Ok(())
+    }
+
+    /// Shadow rays that have been started, so many to this light or to what blocks them, and through the volumes on their way.
+    pub fn send_to_light(
+        &mut self,
+        ray_count: u32,
+        light: u32,
+        traced: Traced,
+    ) -> Result<(), RenderError> {
+        let passed = match traced {
+            Traced::PastObject(object) => object,
+            _ => NONE,
+        };
+        let light_passes = self.plan.light_passes;
+        let (lamp_count, lamp_media) = self.plan.lamp_media_of(light);
+        let counts = u32::from(passed == NONE);
+        let params = ShadowParams { ray_count, passed, counts, lamp_count, lamp_media };
+        let (rays, invocations) = (self.rays(), line(ray_count));
+        let [mut alive, mut going] = [ray_count; 2];
+        while going > 0 {
+            self.trace_to_the_end([ray_count, alive], traced)?;
+            if light_passes {
+                let own = self.renderer.rays.shadows.in_place();
+                self.dispatch(spirv::shadow_meet(rays), &own, &params, invocations);
+            }
+            self.shadow_isosurfaces(ray_count)?;
+            self.shadow_march(ray_count)?;
+            if !light_passes {
+                return Ok(());
+            }
+            self.clear_live();
+            let marks = &self.renderer.buffers.wave.live_marks;
+            marks.record_none(&mut self.renderer.run.recorder, ray_count);
+            let own = self.renderer.rays.shadows.in_place().buffer(MARKS, &marks.bits);
+            self.dispatch(spirv::shadow_go_on(rays), &own, &params, invocations);
+            self.submit(None)?;
+            [alive, going] = self.renderer.buffers.wave.read_live()?;
+        }
+        Ok(())
+    }
+}

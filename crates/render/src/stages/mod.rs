@@ -1,0 +1,13 @@
+//! The stages of a frame, each of which records the passes of its kernels: from the camera, on to the nearest hits, through
+//! volumes, what becomes of each ray, light, the next wave, the film.
+
+mod camera;
+mod fate;
+mod film;
+mod hits;
+mod light;
+mod trace;
+mod volumes;
+
+pub(crate) use camera::camera_trace_by_discs;
+pub(crate) use fate::Fates;
