@@ -404,9 +404,9 @@ fn images_over_the_device_s_limit_are_an_error_that_says_how_large_they_may_be()
         return; // more memory than a test should take
     }
     plan.texels.resize(limit as usize / 4 + 1, 0);
-    match bench.with_device(|device| {
-        Renderer::new(device, &Arc::new(plan.clone()), &Unwatched).map(drop)
-    }) {
+    match bench
+        .with_device(|device| Renderer::new(device, &Arc::new(plan.clone()), &Unwatched).map(drop))
+    {
         Err(error @ RenderError::Images { .. }) => {
             let message = error.to_string();
             assert!(
