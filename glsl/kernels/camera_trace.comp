@@ -11,7 +11,7 @@
 //         live             how many rays would need more work than they may spend: then nothing else counts, and
 //                          the tile is traced pass by pass
 // runs    one invocation per pixel of the tile
-// twin    crates/reference/src/camera_rays.rs, disc_trace.rs, surface_hit.rs, wave.rs
+// twin    crates/reference/src/camera_rays.rs, disc_trace.rs, surface_hit.rs, wave/classify.rs
 //
 // A workgroup is one screen tile. A ray travels in registers from the eye to its pixel: no state is stored.
 #version 460
@@ -34,6 +34,7 @@
 #else
 #include "disc_walk.glsl"
 #endif
+#include "direction.glsl"
 #include "environment.glsl"
 #include "levels.glsl"
 #include "index.glsl"
@@ -41,13 +42,20 @@
 
 layout(local_size_x = TILE_GROUP) in;
 layout(std430, binding = LIVE) buffer Live { uint live; };
-layout(std430, binding = FILM) writeonly buffer Film { FilmPixel film[]; };
+layout(std430, binding = FILM) buffer Film { FilmPixel film[]; };
 layout(std430, binding = LIT_HITS) writeonly buffer LitHits { LitHit lit_hits[]; };
 layout(std430, binding = HITS) writeonly buffer Hits { Hit hits[]; };
 layout(push_constant) uniform Push { CameraTraceParams params; };
+
+// Rays from the camera start outside of everything here.
+uint media_word(uint ray, uint word) {
+    return 0u;
+}
 #include "camera.glsl"
 #include "film.glsl"
 #include "marks.glsl"
+#include "way.glsl"
+#include "material.glsl"
 #include "meeting.glsl"
 
 #ifdef PACKETS
@@ -86,25 +94,24 @@ void main() {
     bool found = ray.hit_slot != NONE;
     Meeting met = Meeting(vec3(0.0), vec3(0.0), 0u, false);
     if (found) met = meeting_of(ray);
-    ObjectInfo object = object_at(met.object);
-    bool is_diffuse = found && (!scene_has(SCENE_SCATTERS) || object.material == MATERIAL_DIFFUSE);
-    bool is_lit = is_diffuse && scene_has(SCENE_LIGHTS);
-    if (scene_has(SCENE_LIGHTS) && scene_has(SCENE_DIFFUSE)) {
+    Fate fate = no_fate();
+    if (found) {
+        uint way = way_through_point(ray.hit_slot, ray.origin, ray.direction, ray.hit_t);
+        fate = fate_at(met.object, Media(0u, 0u), way, uint(CHANNELS_ALL));
+    }
+    bool is_lit = fate.lit && scene_has(SCENE_LIGHTS);
+    if (scene_has(SCENE_LIGHTS) && scene_has(SCENE_LIT)) {
         if (is_lit) {
             lit_hits[at].position = met.position;
             lit_hits[at].slot = ray.hit_slot;
             lit_hits[at].normal = met.normal;
+            if (scene_has(SCENE_GLOSSY)) lit_hits[at].view = packed_direction(d);
             mark_lit(at);
         }
     }
     if (scene_has(SCENE_SCATTERS)) {
-        bool enters = object.material == MATERIAL_GLASS;
-        bool disperses = object.ior.x != object.ior.y || object.ior.y != object.ior.z;
-        if (found && !is_diffuse) {
-            // Into glass of the air's index a ray goes straight, which is no bounce.
-            bool passed = scene_has(SCENE_CLEAR) && enters && object.ior == vec3(1.0);
-            bool ends = params.max_bounces == 0u && !passed;
-            mark_scattering(at, ends ? 0u : (enters && disperses ? 3u : 1u));
+        if (fate.sends) {
+            mark_scattering(at, rays_on(fate, 0u, 0u, params.max_bounces));
             store_ray(at, ray);
             hits[at].position = met.position;
             hits[at].normal = met.normal;

@@ -7,11 +7,11 @@
 //         march            what channels of volumes show
 // writes  written_paths    the same paths: absorption on the way is taken from their throughput
 //         film             every pixel in the first wave; after that, the background where a ray ends
-//         lit, lit_hits    marks of rays that hit a diffuse surface, if there is light, and where
-//         scattering, next_marks   marks of those that hit another, and how many rays each makes; all marks must
-//                          be zero before
+//         lit, lit_hits    marks of rays that hit a lit surface, if there is light, and where
+//         scattering, next_marks   marks of those that hit one that sends rays on, and how many each makes; all marks
+//                          must be zero before
 // runs    one invocation per ray of the wave
-// twin    crates/reference/src/wave.rs
+// twin    crates/reference/src/wave/classify.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
@@ -21,6 +21,7 @@
 #include "stages/wave.glsl"
 #include "stages/volume.glsl"
 #include "stages/film.glsl"
+#include "direction.glsl"
 #include "environment.glsl"
 #include "math.glsl"
 #include "state.glsl"
@@ -35,6 +36,7 @@ layout(push_constant) uniform Push { WaveParams params; };
 #include "path.glsl"
 #include "media.glsl"
 #include "way.glsl"
+#include "material.glsl"
 #include "film.glsl"
 #include "marks.glsl"
 
@@ -47,15 +49,6 @@ void show_later(uint pixel, Ray ray, float along) {
         vec4 first = film[pixel].position_depth;
         film[pixel].along = (first.w + dot3(ray.origin - first.xyz, params.forward)) + along;
     }
-}
-
-// Rays that a ray makes at a surface that is not diffuse.
-uint rays_behind(Path path, Media media, uint object, uint way) {
-    bool spent = path.bounces >= params.max_bounces;
-    if (object_at(object).material != MATERIAL_GLASS) return spent ? 0u : 1u;
-    Crossing crossing = crossing_of(media, object, way);
-    uint count = splits(crossing, path.channels) ? 3u : 1u;
-    return passes(crossing, path.channels) ? (path.crossings < MOST_CROSSINGS ? 1u : 0u) : (spent ? 0u : count);
 }
 
 void main() {
@@ -79,21 +72,23 @@ void main() {
             written_paths[at].throughput = throughput;
         }
     }
-    bool is_diffuse = found && (!scene_has(SCENE_SCATTERS) || object_at(object).material == MATERIAL_DIFFUSE);
-    bool is_lit = is_diffuse && scene_has(SCENE_LIGHTS);
-    if (scene_has(SCENE_LIGHTS) && scene_has(SCENE_DIFFUSE)) {
+    Fate fate = no_fate();
+    if (found) {
+        uint way = way_through_point(ray.hit_slot, ray.origin, ray.direction, ray.hit_t);
+        fate = fate_at(object, media, way, path.channels);
+    }
+    bool is_lit = fate.lit && scene_has(SCENE_LIGHTS);
+    if (scene_has(SCENE_LIGHTS) && scene_has(SCENE_LIT)) {
         if (is_lit) {
             lit_hits[at].position = hit.position;
             lit_hits[at].slot = ray.hit_slot;
             lit_hits[at].normal = hit.normal;
+            if (scene_has(SCENE_GLOSSY)) lit_hits[at].view = packed_direction(ray.direction);
             mark_lit(at);
         }
     }
     if (scene_has(SCENE_SCATTERS)) {
-        if (found && !is_diffuse) {
-            uint way = way_through_point(ray.hit_slot, ray.origin, ray.direction, ray.hit_t);
-            mark_scattering(at, rays_behind(path, media, object, way));
-        }
+        if (fate.sends) mark_scattering(at, rays_on(fate, path.bounces, path.crossings, params.max_bounces));
     }
 
     bool from_camera = (params.flags & uint(WAVE_FROM_CAMERA)) != 0u;
@@ -102,12 +97,12 @@ void main() {
     vec3 alpha = found || (channels & uint(PATH_REFLECTED)) != 0u ? vec3(1.0) : alpha_of(path, throughput);
     vec3 seen = background_at(params.background, ray.direction);
     vec3 background = found || left_out ? vec3(0.0) : through_volumes(path, throughput * seen);
-    vec3 behind = path.emitted + background; // of a diffuse surface, where there is no light
+    vec3 behind = path.emitted + background; // of a lit surface, where there is no light
     if (from_camera) {
         float depth = hit.t * dot3(ray.direction, params.forward);
         float coverage = found ? 1.0 : (scene_has(SCENE_VOLUMES) ? absorptance(path.depth) : 0.0);
         uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, hit.status >> HIT_TOTAL_SHIFT);
-        write_first(pixel, vec4(found && !is_diffuse ? vec3(0.0) : behind, coverage), !is_lit, found,
+        write_first(pixel, vec4(fate.sends ? vec3(0.0) : behind, coverage), !is_lit, found,
                     vec4(hit.position, depth), vec4(hit.normal, found ? float(object) : -1.0), counts, alpha);
         if (scene_has(SCENE_VOLUMES)) film[pixel].along = marches[at].along;
     } else {
@@ -116,7 +111,7 @@ void main() {
             bool shows = (channels & 1u) != 0u && (channels & uint(PATH_REFLECTED)) == 0u;
             if (shows) show_later(pixel, ray, marches[at].along);
         }
-        if (!found || (is_diffuse && !is_lit)) write_channels(pixel, channels, behind);
+        if (!found || !(is_lit || fate.sends)) write_channels(pixel, channels, behind);
         if (!found) write_alpha(pixel, channels, alpha);
     }
 }

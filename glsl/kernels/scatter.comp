@@ -2,15 +2,15 @@
 // section 4).
 //
 // reads   the ray state, grid, hits, objects, polynomials, paths
-//         scattering_rays  the rays that hit what is not diffuse
+//         scattering_rays  the rays that hit a surface that sends rays on
 //         images, texels   the environment
 //         next_marks       which of a wave's rays make one ray or three
 //         next_offsets     where those of each 32 rays begin
 // writes  the ray state, next_paths   the next wave
 //         film             the background, in the direction of rays that may not go on
 //         tally            reflected rays
-// runs    one invocation per ray that hit what is not diffuse
-// twin    crates/reference/src/wave.rs
+// runs    one invocation per such ray
+// twin    crates/reference/src/wave/scatter.rs
 //
 // A ray whose media differ in index between the channels becomes one ray a channel.
 #version 460
@@ -25,8 +25,6 @@
 #include "environment.glsl"
 #include "math.glsl"
 #include "levels.glsl"
-#include "optics.glsl"
-#include "sampler.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
@@ -38,6 +36,7 @@ layout(push_constant) uniform Push { WaveParams params; };
 #include "path.glsl"
 #include "media.glsl"
 #include "way.glsl"
+#include "material.glsl"
 #include "film.glsl"
 
 // A path after a surface. The object is entered or left where `toggles`.
@@ -70,46 +69,29 @@ void store_path(uint to, uint from, Path path, vec3 throughput, uint channels, b
     }
 }
 
-// A ray at a surface.
-struct Turn {
-    uint ray;
-    vec3 d;
-    Hit hit;
-    uint slot;
-    uint object;
-    bool is_glass;
-    Crossing crossing;
-    vec3 throughput;
-    float chance; // under it, glass reflects
-    uint to;      // where the rays that it makes go in the next wave
-    bool goes_on;
-};
-
-// The ray of these channels.
-void send(Turn turn, Path path, uint channels, uint to) {
-    vec3 d = turn.d, n = turn.hit.normal;
-    uint was_reflected = path.channels & uint(PATH_REFLECTED);
-    bool passed = turn.is_glass && passes(turn.crossing, path.channels);
-    vec3 n1 = ior_of(turn.crossing.before), n2 = ior_of(turn.crossing.after);
-    bool red = (channels & 1u) != 0u, green = channels == 2u;
-    float index = red ? n1.x : (green ? n1.y : n1.z), beyond = red ? n2.x : (green ? n2.y : n2.z);
-    Refraction bent = refraction(d, n, index, beyond);
-    bool by_chance = scene_has(SCENE_CHANCE) && turn.chance < bent.reflectance;
-    bool straight = passed || (scene_has(SCENE_CLEAR) && index == beyond);
-    bool reflects = !turn.is_glass || (!straight && (bent.total || by_chance));
-    vec3 direction = reflects ? reflected(d, n) : (straight ? d : bent.direction);
-    if (turn.goes_on) {
-        store_path(to, turn.ray, path, turn.throughput, channels | was_reflected, !passed, !reflects, turn.object,
-                   turn.crossing.place);
-        uint cell = enter_scene(turn.hit.position, direction);
-        store_ray(to, new_ray(turn.hit.position, direction, cell, turn.slot));
-        if (reflects) atomicAdd(reflected_count, 1u);
+// The ray of these channels, which is the `to`th of the next wave where it goes on.
+void send(uint ray, Path path, Place place, Fate fate, Hit hit, uint slot, uint channels, Drawn drawn, uint to, bool goes_on) {
+    Sent sent = sent_on(place, fate, channels, drawn);
+    uint how = channels | (path.channels & ~uint(CHANNELS_ALL));
+    if (scene_has(SCENE_GLOSSY)) {
+        if (fate.lit && scene_has(SCENE_LIGHTS)) {
+            how |= uint(PATH_ADDS);
+            path.emitted = vec3(0.0); // what volumes before a lit surface have sent is in the pixel with its light
+        }
+    }
+    vec3 throughput = path.throughput * sent.weight;
+    if (goes_on) {
+        store_path(to, ray, path, throughput, how, !fate.passes, !sent.reflects, place.object, fate.crossing.place);
+        uint cell = enter_scene(hit.position, sent.direction);
+        store_ray(to, new_ray(hit.position, sent.direction, cell, slot));
+        if (sent.reflects) atomicAdd(reflected_count, 1u);
     } else {
-        uint how = channels | was_reflected | (reflects ? uint(PATH_REFLECTED) : 0u);
-        vec3 seen = leaves_out(params.transparent, false, how) ? vec3(0.0) : background_at(params.background, direction);
-        write_channels(path.pixel, channels, path.emitted + through_volumes(path, turn.throughput * seen));
+        how |= sent.reflects ? uint(PATH_REFLECTED) : 0u;
+        bool left_out = leaves_out(params.transparent, false, how);
+        vec3 seen = left_out ? vec3(0.0) : background_at(params.background, sent.direction);
+        write_channels(path.pixel, how, path.emitted + through_volumes(path, throughput * seen));
         bool refracted = (how & uint(PATH_REFLECTED)) == 0u;
-        write_alpha(path.pixel, channels, refracted ? alpha_of(path, turn.throughput) : vec3(1.0));
+        write_alpha(path.pixel, how, refracted ? alpha_of(path, throughput) : vec3(1.0));
     }
 }
 
@@ -119,32 +101,25 @@ void main() {
     uint at = scattering_ray_at(index);
     Ray ray = load_ray(at);
     Path path = path_of(at);
+    Hit hit = hit_at(at);
     uint object = polynomial_object_at(ray.hit_slot);
-    bool is_glass = object_at(object).material == MATERIAL_GLASS;
-    vec3 albedo = object_at(object).albedo;
     uint all = path.channels & uint(CHANNELS_ALL);
-    Crossing crossing = Crossing(NONE, NONE, MOST_MEDIA);
-    if (is_glass) {
-        uint way = way_through_point(ray.hit_slot, ray.origin, ray.direction, ray.hit_t);
-        crossing = crossing_of(Media(at, path.media_count), object, way);
-    }
+    uint way = way_through_point(ray.hit_slot, ray.origin, ray.direction, ray.hit_t);
+    Fate fate = fate_at(object, Media(at, path.media_count), way, all);
+    Place place = Place(ray.direction, hit.normal, object);
 
     uint bit = at & 31u, below = (1u << bit) - 1u;
     uvec2 marks = next_mark_at(at / 32u);
     uint to = next_offset_at(at / 32u) + uint(bitCount(marks.x & below)) + 2u * uint(bitCount(marks.y & below));
-    float chance = 0.0;
-    if (scene_has(SCENE_CHANCE)) {
-        uvec2 pixel = params.tile_origin + uvec2(path.pixel % params.tile_size.x, path.pixel / params.tile_size.x);
-        uint sample_index = params.sample_index == NONE ? 0u : params.sample_index;
-        chance = sample_1d(pixel, sample_index, params.seed, uint(SAMPLE_FRESNEL) + path.bounces);
-    }
-    Turn turn = Turn(at, ray.direction, hit_at(at), ray.hit_slot, object, is_glass, crossing,
-                     path.throughput * (is_glass ? vec3(1.0) : albedo), chance, to, (marks.x >> bit & 1u) != 0u);
+    bool goes_on = (marks.x >> bit & 1u) != 0u;
+    uvec2 pixel = params.tile_origin + uvec2(path.pixel % params.tile_size.x, path.pixel / params.tile_size.x);
+    Drawn drawn = drawn_at(pixel, params.sample_index, params.seed, path.bounces);
     if (scene_has(SCENE_DISPERSES)) {
-        bool is_split = is_glass && splits(crossing, all) && !passes(crossing, all);
-        uint count = is_split ? 3u : 1u;
-        for (uint i = 0u; i < count; ++i) send(turn, path, is_split ? 1u << i : all, to + i);
+        uint count = fate.splits ? 3u : 1u;
+        for (uint i = 0u; i < count; ++i) {
+            send(at, path, place, fate, hit, ray.hit_slot, fate.splits ? 1u << i : all, drawn, to + i, goes_on);
+        }
     } else {
-        send(turn, path, all, to);
+        send(at, path, place, fate, hit, ray.hit_slot, all, drawn, to, goes_on);
     }
 }

@@ -1,14 +1,14 @@
-// shade: Lambert's law at the diffuse hits of a wave (method, section 4).
+// shade: what lit surfaces scatter of the lights that reach the hits of a wave (method, section 4).
 //
 // reads   the shadow rays' state      as the rays towards the last light left it
 //         lit_hits, polynomials, objects, paths
-//         lit_rays         the rays that hit a diffuse surface
+//         lit_rays         the rays that hit a lit surface
 //         light_sums       what the lights bring, and what the last one would
 //         grid, cells, slots, colors   the values of the points around a hit, where an object has them
 //         images, texels   textures
 // writes  film             the channels that the rays carry
-// runs    one invocation per diffuse hit
-// twin    crates/reference/src/shade.rs
+// runs    one invocation per lit hit
+// twin    crates/reference/src/wave/shade.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
@@ -27,8 +27,7 @@ layout(push_constant) uniform Push { WaveParams params; };
 #include "film.glsl"
 #include "gather.glsl"
 #include "path.glsl"
-
-#define INVERSE_PI 0.318309886
+#include "material.glsl"
 
 void main() {
     uint at = list_index();
@@ -38,6 +37,6 @@ void main() {
     LitHit hit = lit_hit_at(ray);
     vec3 light = gathered(at, path.pixel);
     vec3 albedo = albedo_at(polynomial_object_at(hit.slot), hit.slot, hit.position);
-    vec3 scattered = through_volumes(path, path.throughput * (albedo * (light * INVERSE_PI)));
-    write_channels(path.pixel, path.channels, path.emitted + scattered);
+    vec3 seen = through_volumes(path, path.throughput * scattered(polynomial_object_at(hit.slot), light, albedo));
+    write_channels(path.pixel, path.channels, path.emitted + seen);
 }

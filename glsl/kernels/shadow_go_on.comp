@@ -8,7 +8,7 @@
 //         live             how many go on and may meet a surface yet; then how many go on
 //         marks            one bit for each of the first of these; must be zero before
 // runs    one invocation per shadow ray
-// twin    crates/reference/src/light_passes.rs
+// twin    crates/reference/src/to_light/shadow_go_on.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS

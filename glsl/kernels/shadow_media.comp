@@ -2,10 +2,10 @@
 //
 // reads   the shadow rays' state      as they start towards a light
 //         paths
-//         lit_rays         the rays that hit a diffuse surface
+//         lit_rays         the rays that hit a lit surface
 // writes  shadow_paths     the media of the paths that ended there; the way to the light
-// runs    one invocation per diffuse hit
-// twin    crates/reference/src/light_passes.rs
+// runs    one invocation per lit hit
+// twin    crates/reference/src/to_light/shadow_media.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS

@@ -7,7 +7,7 @@
 //                          isosurfaces and volumes as far as that surface count
 //         shadow_paths     that surface; of rays that have arrived, only media that the light is in
 // runs    one invocation per shadow ray
-// twin    crates/reference/src/light_passes.rs
+// twin    crates/reference/src/to_light/shadow_meet.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
@@ -29,6 +29,7 @@ uint media_word(uint ray, uint word) {
 }
 #include "media.glsl"
 #include "way.glsl"
+#include "material.glsl"
 
 void put_member(uint at, uint place, uint object) {
     uint both = shadow_paths[at].media[place / 2u];
@@ -67,14 +68,12 @@ void main() {
     // Infinitely far away, rays are outside of everything: of a grazing one, the way out was not seen.
     medium = ray.hit_t < NO_HIT ? medium : NONE;
     arriving *= transmittance(medium, ray.hit_t);
-    uint object = found ? polynomial_object_at(ray.hit_slot) : 0u;
-    bool is_glass = found && object_at(object).material == MATERIAL_GLASS;
     bool passes = false;
-    if (is_glass) {
-        Crossing crossing = crossing_of(media, object, way_through_point(ray.hit_slot, ray.origin, ray.direction, ray.hit_t));
-        bvec3 equal_indices = equal(ior_of(crossing.before), ior_of(crossing.after));
-        passes = any(equal_indices) && shadow_paths[at].crossings < uint(MOST_CROSSINGS);
-        arriving = mix(vec3(0.0), arriving, equal_indices);
+    if (found) {
+        uint way = way_through_point(ray.hit_slot, ray.origin, ray.direction, ray.hit_t);
+        bvec3 lets = lets_light_pass(polynomial_object_at(ray.hit_slot), media, way);
+        passes = any(lets) && shadow_paths[at].crossings < uint(MOST_CROSSINGS);
+        arriving = mix(vec3(0.0), arriving, lets);
     }
     if (found && !passes) return;
     light_sums[at].arriving = arriving;

@@ -1,14 +1,14 @@
-// shadow_rays: the rays from the diffuse hits of a wave towards one light (section 5 of the paper).
+// shadow_rays: the rays from the lit hits of a wave towards one light (section 5 of the paper).
 //
 // reads   the shadow rays' state      as the rays towards the light before this one left it
-//         lit_hits, lights, grid
-//         lit_rays         the rays that hit a diffuse surface
-// writes  the shadow rays' state      towards this light; none where it lies behind the surface
+//         lit_hits, lights, grid, polynomials, objects
+//         lit_rays         the rays that hit a lit surface
+// writes  the shadow rays' state      towards this light; none where it scatters nothing of it
 //         light_sums       what the lights before this one bring, and what this one would
 //         film             counts
 //         tally            hits that send none
-// runs    one invocation per diffuse hit
-// twin    crates/reference/src/shade.rs
+// runs    one invocation per lit hit
+// twin    crates/reference/src/wave/shadow_rays.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
@@ -18,6 +18,7 @@
 #include "stages/rays.glsl"
 #include "stages/wave.glsl"
 #include "stages/film.glsl"
+#include "direction.glsl"
 #include "math.glsl"
 #include "levels.glsl"
 #include "light.glsl"
@@ -33,6 +34,7 @@ layout(push_constant) uniform Push { WaveParams params; };
 #include "film.glsl"
 #include "gather.glsl"
 #include "path.glsl"
+#include "material.glsl"
 
 void main() {
     uint at = list_index();
@@ -51,7 +53,12 @@ void main() {
         place = params.sample_index == NONE ? place : drawn; // of the pixel's centre: the centre
     }
     LightSample light = sample_light(lights[params.light], hit.position, place);
-    vec3 arriving = light.arriving * max(dot3(hit.normal, light.towards), 0.0);
+    Place met = Place(vec3(0.0), hit.normal, NONE);
+    if (scene_has(SCENE_GLOSSY)) {
+        met.d = unpacked_direction(hit.view);
+        met.object = polynomial_object_at(hit.slot);
+    }
+    vec3 arriving = light.arriving * lobe(met, light.towards);
     bool arrives = any(greaterThan(arriving, vec3(0.0)));
     if (scene_has(SCENE_MANY_LIGHTS)) light_sums[at].sum = sum;
     light_sums[at].arriving = arriving;

@@ -1,7 +1,8 @@
 // film: what a ray brings back to its pixel.
 //
-// twin  crates/reference/src/wave.rs
-// Each channel of a pixel is written by the one ray that carries it to its end. Counts are integers,
+// twin  crates/reference/src/film.rs
+// Each channel of a pixel is written by the one ray that carries it to its end, or, where surfaces on its way are lit and
+// send rays on, by each of these in turn, which adds. Counts are integers,
 // so that adding them in any order gives the same. What the picture has no use for is not written, nor, of
 // pixels that show no surface, what is the same for all of them. Whoever includes this has the buffer `film`.
 #ifndef FILM_GLSL
@@ -16,7 +17,11 @@ bool leaves_out(uint transparent, bool from_camera, uint channels) {
     return transparent != 0u && (from_camera || (transparent == uint(TRANSPARENT_GLASS) && refracted));
 }
 
+// The channels that a path carries; with PATH_ADDS among them, to what lit surfaces on its way have written.
 void write_channels(uint pixel, uint channels, vec3 radiance) {
+    if (scene_has(SCENE_GLOSSY)) {
+        if ((channels & uint(PATH_ADDS)) != 0u) radiance += film[pixel].color.xyz;
+    }
     if ((channels & 1u) != 0u) film[pixel].color.x = radiance.x;
     if ((channels & 2u) != 0u) film[pixel].color.y = radiance.y;
     if ((channels & 4u) != 0u) film[pixel].color.z = radiance.z;

@@ -1,6 +1,6 @@
 // gather: what a light brings, once the shadow rays towards it have ended.
 //
-// twin  crates/reference/src/wave.rs
+// twin  crates/reference/src/wave/shade.rs
 // Whoever includes this has buffers `light_sums` and `film`, and reads the shadow rays' state.
 #ifndef GATHER_GLSL
 #define GATHER_GLSL
@@ -9,7 +9,7 @@
 #include "scene.glsl"
 #include "state.glsl"
 
-// The lights' sum at a diffuse hit with the last light that was asked.
+// The lights' sum at a lit hit with the last light that was asked.
 vec3 gathered(uint at, uint pixel) {
     Ray shadow = load_ray(at);
     count_work(pixel, shadow.tests, shadow.cells);

@@ -10,12 +10,12 @@ layout(std430, binding = LIT_MARKS) buffer Lit { uint lit[]; };
 layout(std430, binding = SCATTERING_MARKS) buffer Scattering { uint scattering[]; };
 layout(std430, binding = NEXT_MARKS) buffer NextMarks { uvec2 next_marks[]; };
 
-// A hit on a diffuse surface.
+// A hit on a lit surface.
 void mark_lit(uint ray) {
     atomicOr(lit[ray / 32u], 1u << (ray & 31u));
 }
 
-// One on another, and how many rays of the next wave it makes: none, one or three.
+// One on a surface that sends rays on, and how many rays of the next wave it makes: none, one or three.
 void mark_scattering(uint ray, uint count) {
     uint bit = 1u << (ray & 31u);
     atomicOr(scattering[ray / 32u], bit);

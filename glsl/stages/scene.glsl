@@ -13,8 +13,8 @@
 #define SCENE_TEXTURES 64 // An object has a texture
 #define SCENE_SAMPLES 128 // A pixel has several samples
 #define SCENE_REFINES 256 // Hits of an object are refined
-#define SCENE_DIFFUSE 512 // An object is diffuse
-#define SCENE_SCATTERS 1024 // One is not
+#define SCENE_LIT 512 // Lights light the surface of an object
+#define SCENE_SCATTERS 1024 // Rays go on from one
 #define SCENE_NESTED 2048 // Several objects are of glass, and rays may be inside more than one
 #define SCENE_DISPERSES 4096 // Glass has indices by channel, and rays become three
 #define SCENE_ABSORBS 8192 // Glass absorbs
@@ -33,4 +33,5 @@
 #define SCENE_WHOLES 67108864 // One scalar stands for the whole way of a ray
 #define SCENE_GLOWS 134217728 // A transfer function has an emission
 #define SCENE_DEPTHS 0x10000000u // Where half of the light is lost is asked for
+#define SCENE_GLOSSY 0x20000000u // Lights light a surface that scatters by another law than Lambert's, or from which rays go on
 #endif

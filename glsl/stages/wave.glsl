@@ -7,12 +7,16 @@
 #include "stages/tree.glsl"
 
 #define MEDIA_WORDS 8 // Words of a path's set of media: two media each
-#define MATERIAL_DIFFUSE 0 // ObjectInfo.material of Lambert's law
-#define MATERIAL_MIRROR 1 // ObjectInfo.material of a perfect mirror
-#define MATERIAL_GLASS 2 // ObjectInfo.material of smooth glass
+#define MATERIAL_LIT 256 // Bit of ObjectInfo.material: lights of the scene light the surface
+#define MATERIAL_SENDS 512 // Bit: rays go on from it
+#define MATERIAL_INSIDE 1024 // Bit: it encloses a medium, which rays are inside or outside of
+#define MATERIAL_DIFFUSE 256 // ObjectInfo.material of Lambert's law: the number of the kind, and its bits
+#define MATERIAL_MIRROR 513 // ObjectInfo.material of a perfect mirror
+#define MATERIAL_GLASS 1538 // ObjectInfo.material of smooth glass
 #define MOST_CROSSINGS 1024 // Surfaces that a path may pass through that do not change its medium
 #define CHANNELS_ALL 7 // Path.channels of a ray that carries all three
 #define PATH_REFLECTED 8 // Bit beside them: the path was reflected somewhere
+#define PATH_ADDS 16 // Bit: surfaces on its way were lit, so that what it brings is added to what the pixel has
 #define TRANSPARENT_CAMERA 1 // WaveParams.transparent: camera rays leave the background out
 #define TRANSPARENT_GLASS 2 // WaveParams.transparent: and so does all that was refracted alone
 #define WAVE_FROM_CAMERA 1 // WaveParams.flags: rays come from the camera
@@ -30,12 +34,12 @@ struct BackgroundInfo { // 16 bytes
     uint environment;                //  12 An image instead, or NONE.
 };
 
-// A hit on a diffuse surface, where light is asked for.
+// A hit on a lit surface, where light is asked for.
 struct LitHit { // 32 bytes
     vec3 position;                   //   0 Centred scene space.
     uint slot;                       //  12 The point hit.
     vec3 normal;                     //  16 Unit normal facing the ray's origin.
-    uint pad;                        //  28 Unused.
+    uint view;                       //  28 The way that the ray came (packed_direction), where SCENE_GLOSSY.
 };
 
 #ifdef TEXELS
@@ -49,7 +53,7 @@ LitHit lit_hit_from(usamplerBuffer texels, int first) {
 // Push constants of the kernels that scatter and shade the rays of a wave.
 struct WaveParams { // 80 bytes
     vec3 forward;                    //   0 Unit vector of the viewing axis.
-    uint ray_count;                  //  12 Rays of the wave; for shadow_rays and shade, hits on diffuse surfaces.
+    uint ray_count;                  //  12 Rays of the wave; for shadow_rays and shade, hits on lit surfaces.
     BackgroundInfo background;       //  16 What rays that hit nothing see.
     uvec2 tile_origin;               //  32 The tile's first pixel in the full image.
     uvec2 tile_size;                 //  40 Columns and rows of the tile.
@@ -92,7 +96,7 @@ struct ImageInfo { // 16 bytes
 
 // What shading needs of an object.
 struct ObjectInfo { // 112 bytes
-    vec3 albedo;                     //   0 Linear RGB, where the points' colours do not count; of a mirror, the share reflected.
+    vec3 albedo;                     //   0 Linear RGB, where the points' colours do not count; what rays that go on keep of their light.
     uint first_color;                //  12 First float of what its points have: three floats of colour each, or, with a texture, their two places in it; NONE where they have neither.
     uint first_slot;                 //  16 First slot of the object.
     uint polynomial;                 //  20 FIT_FULL or FIT_INCOMPLETE: what refinement fits first.
@@ -135,7 +139,7 @@ struct Light { // 32 bytes
 struct Path { // 80 bytes
     vec3 throughput;                 //   0 What of the light it finds arrives at the pixel.
     uint pixel;                      //  12 Pixel of the tile, row by row; NONE: no ray at all.
-    uint channels;                   //  16 Bits of CHANNELS_ALL: 1 red, 2 green, 4 blue; and PATH_REFLECTED.
+    uint channels;                   //  16 Bits of CHANNELS_ALL: 1 red, 2 green, 4 blue; and PATH_REFLECTED, PATH_ADDS.
     uint bounces;                    //  20 Interactions with surfaces so far.
     uint crossings;                  //  24 Surfaces passed through so far that did not change its medium.
     uint media_count;                //  28 Objects that it is inside.
@@ -155,7 +159,7 @@ Path path_from(usamplerBuffer texels, int first) {
 }
 #endif
 
-// Light at a diffuse hit.
+// Light at a lit hit.
 struct LightSum { // 32 bytes
     vec3 sum;                        //   0 Irradiance by the lights before the last, each by its cosine.
     uint pad;                        //  12 Unused.
@@ -302,7 +306,7 @@ vec3 lit_hit_normal_at(uint at) {
     return uintBitsToFloat(texelFetch(lit_hit_texels, int(2u * at) + 1).xyz);
 }
 
-uint lit_hit_pad_at(uint at) {
+uint lit_hit_view_at(uint at) {
     return texelFetch(lit_hit_texels, int(2u * at) + 1).w;
 }
 #else
@@ -324,8 +328,8 @@ vec3 lit_hit_normal_at(uint at) {
     return lit_hit_list[at].normal;
 }
 
-uint lit_hit_pad_at(uint at) {
-    return lit_hit_list[at].pad;
+uint lit_hit_view_at(uint at) {
+    return lit_hit_list[at].view;
 }
 #endif
 

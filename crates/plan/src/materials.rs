@@ -1,69 +1,59 @@
 //! What kernels take of a material, and what the rest of the plan asks of one. Only here are kinds told apart.
 
+use bytemuck::Zeroable;
 use kernels::layout::{
-    MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR, ObjectInfo, SCENE_ABSORBS, SCENE_DIFFUSE,
-    SCENE_DISPERSES, SCENE_NESTED, SCENE_SCATTERS,
+    MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_INSIDE, MATERIAL_LIT, MATERIAL_MIRROR,
+    MATERIAL_SENDS, ObjectInfo, SCENE_ABSORBS, SCENE_DISPERSES, SCENE_GLOSSY, SCENE_LIT,
+    SCENE_NESTED, SCENE_SCATTERS,
 };
 use scene::{Albedo, Material, MaterialKind};
 
 /// Albedo of objects whose points have no colours and whose material names none.
 pub(crate) const DEFAULT_ALBEDO: [f32; 3] = [0.8; 3];
 
-/// What kernels take of a material.
-pub(crate) struct Optics {
-    pub material: u32,
-    /// The share of light that a lit surface scatters; else what rays that go on keep of their light.
-    pub albedo: [f32; 3],
-    pub ior: [f32; 3],
-    pub priority: i32,
-    pub absorption: [f32; 3],
-}
-
-impl Optics {
-    pub fn of(material: &Material) -> Self {
-        let f32s = |v: [f64; 3]| v.map(|x| x as f32);
-        let opaque = |material: u32, albedo: [f32; 3]| Self {
-            material,
-            albedo,
-            ior: [1.0; 3],
-            priority: 0,
-            absorption: [0.0; 3],
-        };
-        match material.kind {
-            MaterialKind::Diffuse => opaque(
-                MATERIAL_DIFFUSE,
-                match material.albedo {
-                    Albedo::Color(color) => f32s(color),
-                    _ => DEFAULT_ALBEDO,
-                },
-            ),
-            MaterialKind::Mirror { reflectance } => opaque(MATERIAL_MIRROR, f32s(reflectance)),
-            MaterialKind::Glass { ior, priority, absorption } => Self {
-                ior: f32s(ior),
-                priority,
-                absorption: f32s(absorption),
-                ..opaque(MATERIAL_GLASS, [1.0; 3])
-            },
+/// What kernels take of a material; nothing else of the object.
+pub(crate) fn info_of(material: &Material) -> ObjectInfo {
+    let f32s = |v: [f64; 3]| v.map(|x| x as f32);
+    let opaque = |material: u32, albedo: [f32; 3]| ObjectInfo {
+        material,
+        albedo,
+        ior: [1.0; 3],
+        ..ObjectInfo::zeroed()
+    };
+    match material.kind {
+        MaterialKind::Diffuse => {
+            let albedo = match material.albedo {
+                Albedo::Color(color) => f32s(color),
+                _ => DEFAULT_ALBEDO,
+            };
+            opaque(MATERIAL_DIFFUSE, albedo)
         }
+        MaterialKind::Mirror { reflectance } => opaque(MATERIAL_MIRROR, f32s(reflectance)),
+        MaterialKind::Glass { ior, priority, absorption } => ObjectInfo {
+            ior: f32s(ior),
+            priority,
+            absorption: f32s(absorption),
+            ..opaque(MATERIAL_GLASS, [1.0; 3])
+        },
     }
 }
 
 /// Whether lights of the scene light the surface.
 #[must_use]
 pub fn is_lit(object: &ObjectInfo) -> bool {
-    object.material == MATERIAL_DIFFUSE
+    object.material & MATERIAL_LIT != 0
 }
 
 /// Whether rays go on from the surface.
 #[must_use]
 pub fn sends_rays_on(object: &ObjectInfo) -> bool {
-    object.material != MATERIAL_DIFFUSE
+    object.material & MATERIAL_SENDS != 0
 }
 
 /// Whether the surface encloses a medium, which rays are inside or outside of.
 #[must_use]
 pub fn has_inside(object: &ObjectInfo) -> bool {
-    object.material == MATERIAL_GLASS
+    object.material & MATERIAL_INSIDE != 0
 }
 
 /// Whether rays that go on from the surface, or through its inside, lose light.
@@ -95,8 +85,9 @@ pub(crate) fn rays_at_most(objects: &[ObjectInfo]) -> u32 {
 pub(crate) fn scene_bits(objects: &[ObjectInfo]) -> u32 {
     let any = |has: fn(&ObjectInfo) -> bool| objects.iter().any(has);
     let bits = [
-        (SCENE_DIFFUSE, any(is_lit)),
+        (SCENE_LIT, any(is_lit)),
         (SCENE_SCATTERS, any(sends_rays_on)),
+        (SCENE_GLOSSY, any(|object| is_lit(object) && object.material != MATERIAL_DIFFUSE)),
         (SCENE_NESTED, objects.iter().filter(|object| has_inside(object)).count() > 1),
         (SCENE_DISPERSES, any(disperses)),
         (SCENE_ABSORBS, any(absorbs)),

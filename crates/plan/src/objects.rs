@@ -2,7 +2,7 @@
 
 use crate::chosen::Findings;
 use crate::images::{ImageList, Use};
-use crate::materials::Optics;
+use crate::materials::info_of;
 use crate::missing::{Lacking, Missing, count_marked};
 use crate::{PlanError, SceneImages, Volumes, colors};
 use kernels::layout::{FIT_FULL, FIT_INCOMPLETE, FitParams, NONE, ObjectInfo};
@@ -69,9 +69,7 @@ pub(crate) fn object_infos(
             let axis = axis.unwrap_or(TextureAxis::Y);
             rows = colors::projection(axis, set, &object.transform, cloud.origin);
         }
-        let optics = Optics::of(&object.material);
         infos.push(ObjectInfo {
-            albedo: optics.albedo,
             first_color: match values {
                 PointValues::None => NONE,
                 _ => colors.len() as u32,
@@ -92,13 +90,10 @@ pub(crate) fn object_infos(
             blends: u32::from(
                 object.surface.normals == Normals::Blended && surfaces[index].count > 0,
             ),
-            material: optics.material,
-            ior: optics.ior,
-            priority: optics.priority,
-            absorption: optics.absorption,
             texture,
             texture_u: rows[0],
             texture_v: rows[1],
+            ..info_of(&object.material)
         });
         match values {
             PointValues::None => {}

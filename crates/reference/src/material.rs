@@ -140,3 +140,54 @@ pub(crate) fn lets_light_pass(
         false => [false; 3],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bytemuck::Zeroable;
+    use kernels::layout::{CHANNELS_ALL, Constant, MATERIAL_LIT, MATERIAL_SENDS, STAGES};
+
+    const GLSL: &str = include_str!("../../../glsl/shared/material.glsl");
+
+    /// The kernel's side has a `case` in each function that the kind's bits ask for, and in no other; the twin's side
+    /// reaches an arm.
+    #[test]
+    fn every_kind_has_its_case_on_both_sides() {
+        let body = |head: &str| {
+            let (_, after) = GLSL.split_once(head).unwrap_or_else(|| panic!("no '{head}'"));
+            after.split("\n}\n").next().unwrap().to_owned()
+        };
+        let [sends, lights, scatters] =
+            ["\nSent sent_on(", "\nvec3 lobe(", "\nvec3 scattered("].map(body);
+        let bits = ["MATERIAL_LIT", "MATERIAL_SENDS", "MATERIAL_INSIDE"];
+        let all = STAGES.iter().flat_map(|stage| stage.constants);
+        let is_kind = |name: &str| name.starts_with("MATERIAL_") && !bits.contains(&name);
+        for &Constant { name, value: material, .. } in all.filter(|constant| is_kind(constant.name))
+        {
+            let case = format!("case uint({name}):");
+            let [lit, sent] = [MATERIAL_LIT, MATERIAL_SENDS].map(|bit| material & bit != 0);
+            assert!(lit || sent, "{name}: rays end in it without a light");
+            assert_eq!(sends.contains(&case), sent, "{name}: sent_on");
+            assert_eq!(lights.contains(&case), lit, "{name}: lobe");
+            assert_eq!(scatters.contains(&case), lit, "{name}: scattered");
+
+            let info = ObjectInfo { material, ior: [1.5; 3], ..ObjectInfo::zeroed() };
+            let objects = [info];
+            let fate = fate_at(0, &objects, (&Media::default(), Way::Either, CHANNELS_ALL));
+            let place = Place { d: V3([0.0, -1.0, 0.0]), normal: V3([0.0, 1.0, 0.0]), info: &info };
+            if fate.sends {
+                let _: Sent<f64> = sent_on(
+                    &place,
+                    &fate,
+                    CHANNELS_ALL,
+                    &Drawn::at(&WaveParams::zeroed(), [0; 2], 0),
+                    &objects,
+                );
+            }
+            if fate.lit {
+                let light = lobe(&place, V3([0.0, 1.0, 0.0]));
+                let _: V3<f64> = scattered(&info, light, || V3::splat(1.0));
+            }
+        }
+    }
+}

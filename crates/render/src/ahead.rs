@@ -7,7 +7,7 @@ use crate::renderer::{Renderer, longest_list, needed, wave_rays};
 use crate::stages::camera_trace_by_discs;
 use crate::state::RayLoop;
 use gpu::{Device, Kernel};
-use kernels::layout::SCENE_DIFFUSE;
+use kernels::layout::SCENE_LIT;
 use kernels::spirv::{self, Marching, Module, Searching, Start, Way};
 use plan::{CENTER, Plan};
 use points::device::{Needed, modules_of_shapes, modules_of_structures};
@@ -67,8 +67,8 @@ fn likely_modules(device: &Arc<Device>, plan: &Plan) -> [Vec<&'static Module>; 3
         then.extend(Discs::modules(rays));
     }
     let any_surface = any_points || plan.volumes.any_isosurface();
-    let any_diffuse = any_surface && plan.scene_bits() & SCENE_DIFFUSE != 0;
-    let is_lit = any_diffuse && !plan.lights.is_empty();
+    let any_lit = any_surface && plan.scene_bits() & SCENE_LIT != 0;
+    let is_lit = any_lit && !plan.lights.is_empty();
     let scatters = any_surface && plan.scatters();
     let points_lit = plan.volumes.any_lit() && !plan.lights.is_empty();
     let mut when = |asked: bool, modules: &[&'static Module]| {

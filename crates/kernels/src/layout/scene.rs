@@ -24,9 +24,9 @@ stage! {
         SCENE_SAMPLES = 128;
         /// Hits of an object are refined.
         SCENE_REFINES = 256;
-        /// An object is diffuse.
-        SCENE_DIFFUSE = 512;
-        /// One is not.
+        /// Lights light the surface of an object.
+        SCENE_LIT = 512;
+        /// Rays go on from one.
         SCENE_SCATTERS = 1024;
         /// Several objects are of glass, and rays may be inside more than one.
         SCENE_NESTED = 2048;
@@ -64,6 +64,8 @@ stage! {
         SCENE_GLOWS = 134_217_728;
         /// Where half of the light is lost is asked for.
         SCENE_DEPTHS = 268_435_456;
+        /// Lights light a surface that scatters by another law than Lambert's, or from which rays go on.
+        SCENE_GLOSSY = 536_870_912;
     }
     bindings from 110 {
     }

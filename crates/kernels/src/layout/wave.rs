@@ -10,18 +10,26 @@ stage! {
     constants {
         /// Words of a path's set of media: two media each.
         MEDIA_WORDS = 8;
-        /// [`ObjectInfo::material`] of Lambert's law.
-        MATERIAL_DIFFUSE = 0;
+        /// Bit of [`ObjectInfo::material`]: lights of the scene light the surface.
+        MATERIAL_LIT = 256;
+        /// Bit: rays go on from it.
+        MATERIAL_SENDS = 512;
+        /// Bit: it encloses a medium, which rays are inside or outside of.
+        MATERIAL_INSIDE = 1024;
+        /// [`ObjectInfo::material`] of Lambert's law: the number of the kind, and its bits.
+        MATERIAL_DIFFUSE = 256;
         /// [`ObjectInfo::material`] of a perfect mirror.
-        MATERIAL_MIRROR = 1;
+        MATERIAL_MIRROR = 513;
         /// [`ObjectInfo::material`] of smooth glass.
-        MATERIAL_GLASS = 2;
+        MATERIAL_GLASS = 1538;
         /// Surfaces that a path may pass through that do not change its medium.
         MOST_CROSSINGS = 1024;
         /// [`Path::channels`] of a ray that carries all three.
         CHANNELS_ALL = 7;
         /// Bit beside them: the path was reflected somewhere.
         PATH_REFLECTED = 8;
+        /// Bit: surfaces on its way were lit, so that what it brings is added to what the pixel has.
+        PATH_ADDS = 16;
         /// [`WaveParams::transparent`]: camera rays leave the background out.
         TRANSPARENT_CAMERA = 1;
         /// [`WaveParams::transparent`]: and so does all that was refracted alone.
@@ -89,7 +97,7 @@ stage! {
             /// An image instead, or `NONE`.
             environment: u32,
         }
-        /// A hit on a diffuse surface, where light is asked for.
+        /// A hit on a lit surface, where light is asked for.
         LitHit {
             /// Centred scene space.
             position: [f32; 3],
@@ -97,14 +105,14 @@ stage! {
             slot: u32,
             /// Unit normal facing the ray's origin.
             normal: [f32; 3],
-            /// Unused.
-            pad: u32,
+            /// The way that the ray came (`packed_direction`), where `SCENE_GLOSSY`.
+            view: u32,
         }
         /// Push constants of the kernels that scatter and shade the rays of a wave.
         WaveParams {
             /// Unit vector of the viewing axis.
             forward: [f32; 3],
-            /// Rays of the wave; for `shadow_rays` and `shade`, hits on diffuse surfaces.
+            /// Rays of the wave; for `shadow_rays` and `shade`, hits on lit surfaces.
             ray_count: u32,
             /// What rays that hit nothing see.
             background: BackgroundInfo,
@@ -176,7 +184,7 @@ stage! {
         }
         /// What shading needs of an object.
         ObjectInfo {
-            /// Linear RGB, where the points' colours do not count; of a mirror, the share reflected.
+            /// Linear RGB, where the points' colours do not count; what rays that go on keep of their light.
             albedo: [f32; 3],
             /// First float of what its points have: three floats of colour each, or, with a texture, their two
             /// places in it; `NONE` where they have neither.
@@ -227,7 +235,7 @@ stage! {
             throughput: [f32; 3],
             /// Pixel of the tile, row by row; `NONE`: no ray at all.
             pixel: u32,
-            /// Bits of `CHANNELS_ALL`: 1 red, 2 green, 4 blue; and `PATH_REFLECTED`.
+            /// Bits of `CHANNELS_ALL`: 1 red, 2 green, 4 blue; and `PATH_REFLECTED`, `PATH_ADDS`.
             channels: u32,
             /// Interactions with surfaces so far.
             bounces: u32,
@@ -242,7 +250,7 @@ stage! {
             /// Optical depth of the volumes on its way so far, which is no part of the throughput.
             depth: f32,
         }
-        /// Light at a diffuse hit.
+        /// Light at a lit hit.
         LightSum {
             /// Irradiance by the lights before the last, each by its cosine.
             sum: [f32; 3],

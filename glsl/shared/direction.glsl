@@ -1,0 +1,27 @@
+// direction: a unit vector in 32 bits.
+//
+// twin  crates/reference/src/direction.rs
+// Through an octahedron that is unfolded to a square (Meyer et al., On Floating-Point Normal Vectors, 2010), 16 bits an
+// axis. What comes back is less than 7e-5 off.
+#ifndef DIRECTION_GLSL
+#define DIRECTION_GLSL
+#include "math.glsl"
+
+// The outer corners of the square, which are the lower half of the octahedron, are folded inwards, and back.
+vec2 folded(vec2 p) {
+    return (1.0 - abs(p.yx)) * vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
+}
+
+uint packed_direction(vec3 v) {
+    vec2 p = v.xy / (abs(v.x) + abs(v.y) + abs(v.z));
+    p = v.z < 0.0 ? folded(p) : p;
+    uvec2 word = uvec2(p * 32767.0 + 32767.5);
+    return word.x | word.y << 16;
+}
+
+vec3 unpacked_direction(uint packed) {
+    vec2 p = (vec2(packed & 0xffffu, packed >> 16) - 32767.0) / 32767.0;
+    float z = (1.0 - abs(p.x)) - abs(p.y);
+    return normalize3(vec3(z < 0.0 ? folded(p) : p, z));
+}
+#endif

@@ -1,0 +1,113 @@
+// material: what surfaces do with light and with rays. Each kind of material has its functions in a file below materials/;
+// here they are called by kind. Whether a kind is lit, sends rays on and has an inside are bits of its number.
+//
+// twin  crates/reference/src/material.rs
+// Whoever includes this has media_word(ray, word), as media.glsl says. A kind that has no case here gives no light and
+// sends rays without weight; the test `every_kind_has_its_case_on_both_sides` finds it first.
+#ifndef MATERIAL_GLSL
+#define MATERIAL_GLSL
+#include "stages/scene.glsl"
+#include "stages/wave.glsl"
+#include "media.glsl"
+#include "sampler.glsl"
+#include "scene.glsl"
+
+// What becomes of a ray at a surface.
+struct Fate {
+    bool lit;          // lights of the scene light the surface
+    bool sends;        // rays go on from it
+    bool passes;       // the ray goes through as if there were nothing: no bounce
+    bool splits;       // it becomes one ray a channel
+    Crossing crossing; // how rays go through it, where it has an inside
+};
+
+Fate no_fate() {
+    return Fate(false, false, false, false, Crossing(NONE, NONE, MOST_MEDIA));
+}
+
+// The fate of a ray of these channels, which is inside `media`.
+Fate fate_at(uint object, Media media, uint way, uint channels) {
+    Fate fate = no_fate();
+    fate.lit = true;
+    if (!scene_has(SCENE_SCATTERS)) return fate;
+    uint material = object_material_at(object);
+    fate.lit = (material & uint(MATERIAL_LIT)) != 0u;
+    fate.sends = (material & uint(MATERIAL_SENDS)) != 0u;
+    if ((material & uint(MATERIAL_INSIDE)) != 0u) {
+        fate.crossing = crossing_of(media, object, way);
+        fate.passes = passes(fate.crossing, channels);
+        fate.splits = !fate.passes && splits(fate.crossing, channels);
+    }
+    return fate;
+}
+
+// How many rays go on after so many bounces and crossings.
+uint rays_on(Fate fate, uint bounces, uint crossings, uint max_bounces) {
+    bool spent = fate.passes ? crossings >= uint(MOST_CROSSINGS) : bounces >= max_bounces;
+    return spent ? 0u : (fate.splits ? 3u : 1u);
+}
+
+// Where a ray meets a surface.
+struct Place {
+    vec3 d;      // the ray's direction
+    vec3 normal; // of the surface, facing the ray's origin
+    uint object;
+};
+
+// The numbers of a pixel's sample that decide what happens at a bounce.
+struct Drawn {
+    float chance; // under it, glass reflects
+};
+
+Drawn drawn_at(uvec2 pixel, uint sample_index, uint seed, uint bounce) {
+    uint index = sample_index == NONE ? 0u : sample_index;
+    float chance = 0.0;
+    if (scene_has(SCENE_CHANCE)) chance = sample_1d(pixel, index, seed, uint(SAMPLE_FRESNEL) + bounce);
+    return Drawn(chance);
+}
+
+// A ray that goes on from a surface.
+struct Sent {
+    vec3 direction;
+    vec3 weight;   // what it keeps of its throughput
+    bool reflects; // it stays on the side that it came from
+};
+
+#include "materials/diffuse.glsl"
+#include "materials/glass.glsl"
+#include "materials/mirror.glsl"
+
+// The ray of these channels that goes on.
+Sent sent_on(Place place, Fate fate, uint channels, Drawn drawn) {
+    switch (object_material_at(place.object)) {
+    case uint(MATERIAL_MIRROR): return mirror_sends(place);
+    case uint(MATERIAL_GLASS): return glass_sends(place, fate, channels, drawn);
+    }
+    return Sent(place.d, vec3(0.0), false);
+}
+
+// What of light from `towards` a surface scatters to where the ray came from, but for what is the same for all
+// directions.
+vec3 lobe(Place place, vec3 towards) {
+    if (!scene_has(SCENE_GLOSSY)) return diffuse_lobe(place, towards);
+    switch (object_material_at(place.object)) {
+    case uint(MATERIAL_DIFFUSE): return diffuse_lobe(place, towards);
+    }
+    return vec3(0.0);
+}
+
+// What of the light that `lobe` left a surface scatters. `albedo` is that of the place.
+vec3 scattered(uint object, vec3 light, vec3 albedo) {
+    if (!scene_has(SCENE_GLOSSY)) return diffuse_scattered(light, albedo);
+    switch (object_material_at(object)) {
+    case uint(MATERIAL_DIFFUSE): return diffuse_scattered(light, albedo);
+    }
+    return vec3(0.0);
+}
+
+// Of each channel, whether light goes straight through a surface on its way to a place inside `media`.
+bvec3 lets_light_pass(uint object, Media media, uint way) {
+    if ((object_material_at(object) & uint(MATERIAL_INSIDE)) == 0u) return bvec3(false);
+    return glass_lets_light_pass(crossing_of(media, object, way));
+}
+#endif
