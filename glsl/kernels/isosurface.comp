@@ -39,7 +39,7 @@ layout(std430, binding = HITS) buffer Hits { Hit hits[]; };
 layout(push_constant) uniform Push { MarchParams params; };
 
 #define AT_ONCE 64u // points of a row
-#define MOST_SAMPLES 16777216.0 // floats count no farther
+#define MOST_SAMPLES 16777215.0 // floats count little farther
 #define TURNS 8u
 #define ON_IT -1e-20 // the value of a place on the surface: 0 is not known
 #define SKIPPED 0u // looked

@@ -5,7 +5,8 @@
 //         objects          what the medium that a ray is in absorbs
 //         volumes, their cells, points, lengths and stops
 // writes  march            where each ray goes on in the next pass, and what channels of volumes show
-//         ends             of each volume, what the last step ended with, where there are several
+//         ends             of each volume, what the last step ended with; where transfer functions are steep, the last part
+//                          of one and the whole step
 //         paths            what the volumes emit towards the camera, and their optical depth
 //         live             how many rays are not done
 // runs    one invocation per ray of the wave; dispatched until none lives
@@ -19,8 +20,9 @@
 //
 // Samples lie at the ends of steps that are counted from where the ray enters the first volume, or from its
 // start where it is inside the surface of one; the last step ends where the ray does, and counts with its own
-// length. Between the scalars at its ends, the transfer function is integrated. Volumes add. A pass can end after
-// any row of cells or any 64 points of one.
+// length. Between the scalars at its ends, the transfer function is integrated. Where that is steep, steps that may pass
+// a steep piece are divided into parts, once all volumes are known at both ends. Volumes add. A pass can end after any
+// row of cells or any 64 points of one.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
@@ -70,7 +72,9 @@ layout(push_constant) uniform Push { MarchParams params; };
 #define UNREACHED NO_HIT // the scalar where no point is in reach
 #define UNSEEN (-NO_HIT) // and where nothing is seen from the cell, whatever it is
 #define LARGEST 1e38 // scalar
-#define MOST_SAMPLES 16777216.0 // floats count no farther
+#define MOST_SAMPLES 16777215.0 // floats count little farther, and places have no more bits
+#define PLACE_BITS 24 // of March::place
+#define PART_BITS 7   // of the part, above them
 
 bool is_inside(uint path, uint object) {
     bool found = false;
@@ -115,11 +119,13 @@ struct Sample {
     bool outside; // at the border of the volumes' boxes, where no point is in reach
 };
 
-Sample sample_of(Ray ray, vec2 way, float end, uint place, uint steps) {
+Sample sample_of(Ray ray, vec2 way, float end, uint place, uint part, uint steps) {
     float begin = float(max(place, 1u) - 1u) * params.step;
     float length_of_step = place > 0u ? min(params.step, (way.y - way.x) - begin) : 0.0;
+    length_of_step *= part > 0u ? 1.0 / float(MARCH_PARTS) : 1.0;
+    begin += part > 0u ? float(part - 1u) * length_of_step : 0.0;
     vec3 x = ray.origin + (way.x + (begin + length_of_step)) * ray.direction;
-    bool outside = (place == 0u && way.x > 0.0) || (place == steps && way.y < end);
+    bool outside = (place == 0u && way.x > 0.0) || (place == steps && part == 0u && way.y < end);
     return Sample(x, length_of_step, way.x + begin, outside);
 }
 
@@ -246,24 +252,33 @@ void main() {
     // Drivers without real branches run what is under an if for every ray: loops of one turn or none are passed over.
     bool alone = !scene_has(SCENE_MANY_VOLUMES);
     VolumeInfo volume = volumes[march.volume];
-    uint end_at = at * params.volume_count + march.volume;
+    bool steep = scene_has(SCENE_STEEP);
+    uint part = steep ? bitfieldExtract(march.place, PLACE_BITS, PART_BITS) : 0u; // 0: the whole step
+    bool divided = steep && bitfieldExtract(march.place, 31, 1) != 0u;
+    march.place = steep ? bitfieldExtract(march.place, 0, PLACE_BITS) : march.place;
+    uint slots = steep ? 2u : 1u;
+    uint end_at = (at * params.volume_count + march.volume) * slots;
 #ifdef LIT
     vec4 before = ends[end_at]; // and the light there
+    vec4 ahead = ends[end_at + (slots - 1u)]; // at the end of the whole step
 #else
     float before = ends[end_at];
+    float ahead = ends[end_at + (slots - 1u)];
 #endif
     while (march.place < places && work_left > 0u) {
-        Sample at_place = sample_of(ray, way, end, march.place, steps);
-        bool fresh = alone && march.row == 0u && march.cursor == 0u;
+        Sample at_place = sample_of(ray, way, end, march.place, part, steps);
+        bool fresh = alone && part == 0u && march.row == 0u && march.cursor == 0u;
         while (fresh && march.place < places && work_left > 0u && look_at(volume, at_place) == LOOK_NOWHERE) {
             ++march.place;
             --work_left;
 #ifdef LIT
             before.x = UNSEEN;
+            ahead.x = UNSEEN;
 #else
             before = UNSEEN;
+            ahead = UNSEEN;
 #endif
-            at_place = sample_of(ray, way, end, march.place, steps);
+            at_place = sample_of(ray, way, end, march.place, part, steps);
         }
         bool counts = march.place < places && takes_part(volume, path);
         uint look = counts ? look_at(volume, at_place) : LOOK_NOWHERE;
@@ -271,7 +286,8 @@ void main() {
         float reach = sqrt(volume.square_radius);
         uvec3 low, high;
         cells_around(volume.grid, x, reach, low, high);
-        uint rows = look == LOOK_AROUND ? (high.y - low.y + 1u) * (high.z - low.z + 1u) : 0u;
+        bool is_known = part == MARCH_PARTS; // by the whole step
+        uint rows = look == LOOK_AROUND && !is_known ? (high.y - low.y + 1u) * (high.z - low.z + 1u) : 0u;
         bool particles = scene_has(SCENE_PARTICLES) && (!scene_has(SCENE_WEIGHTS) || volume.kernel == VOLUME_SPH);
 
         while (march.row < rows && work_left > 0u) {
@@ -320,18 +336,23 @@ void main() {
             float scalar = min(max(march.numerator / divisor, -LARGEST), LARGEST);
             float here = look == LOOK_NOWHERE ? UNSEEN : (reached ? scalar : UNREACHED);
 #ifdef LIT
-            float there = march.place > 0u ? before.x : UNSEEN;
-            vec3 light = vec3(1.0);
+            here = is_known ? ahead.x : here;
+            vec4 start = steep && part == 0u ? ahead : before;
+            float there = march.place > 0u ? start.x : UNSEEN;
+            vec3 light = is_known ? ahead.yzw : vec3(1.0);
             uint lit = reached && volume.shading != VOLUME_EMITS ? 1u : 0u;
             for (uint i = 0u; i < lit; ++i) {
                 light = scattered(volume, march.numerator, march.denominator, sums, at_place.x, ray.direction);
             }
             sums = MarchLight(vec3(0.0), 0u, vec3(0.0), 0u, vec4(0.0));
-            vec3 light_there = before.yzw;
-            before = vec4(here, light);
+            vec3 light_there = start.yzw;
+            ahead = part == 0u ? vec4(here, light) : ahead;
+            before = steep && part == 0u ? vec4(there, light_there) : vec4(here, light);
 #else
-            float there = march.place > 0u ? before : UNSEEN;
-            before = here;
+            here = is_known ? ahead : here;
+            float there = march.place > 0u ? (steep && part == 0u ? ahead : before) : UNSEEN;
+            ahead = part == 0u ? here : ahead;
+            before = steep && part == 0u ? there : here;
 #endif
             // A step with one end in reach is so for half of its way. At the border of particles a sum is 0.
             bool is_here = is_scalar(here), is_there = is_scalar(there);
@@ -357,6 +378,12 @@ void main() {
             }
             bool counts_here = emission && shows;
             Shown seen = mean_of(volume, counts_here ? from : 0.0, counts_here ? to : 0.0);
+            uint may_divide = steep && part == 0u && counts_here && !divided ? 1u : 0u;
+            while (may_divide > 0u) {
+                --may_divide;
+                bool seen_at_border = !both && (seen.scattering.w > 0.0 || any(greaterThan(seen.emission, vec3(0.0))));
+                divided = seen_at_border || is_divided(volume, from, to, at_place.x);
+            }
 #ifdef LIT
             vec3 mean_light = both ? 0.5 * (light_there + light) : (is_here ? light : light_there);
             seen.scattering.xyz *= mean_light;
@@ -371,8 +398,10 @@ void main() {
             march.denominator = 0.0;
             march.row = 0u;
             bool last = alone || march.volume + 1u >= params.volume_count;
+            bool closer = last && divided && part == 0u; // the step begins anew, in parts
+            bool ends_step = last && !closer;
             float step_depth = step_extinction * at_place.length_of_step;
-            bool emits = last && (step_depth > 0.0 || any(greaterThan(step_color, vec3(0.0))));
+            bool emits = ends_step && (step_depth > 0.0 || any(greaterThan(step_color, vec3(0.0))));
             float through = exp_negative(-march.depth);
             vec3 lengths = vec3(at_place.length_of_step * mean_transmittance(step_depth)); // that a step shows
 #ifndef SHADOWS
@@ -394,13 +423,13 @@ void main() {
             march.color_lost = sends ? color_lost : march.color_lost;
             // Where the light is lost that is looked for: a place within this step.
             float missing = -march.along - march.depth;
-            bool found = again && last && step_depth > 0.0 && step_depth >= missing;
+            bool found = again && ends_step && step_depth > 0.0 && step_depth >= missing;
             float t = at_place.begin + at_place.length_of_step * (max(missing, 0.0) / (step_depth > 0.0 ? step_depth : 1.0));
             march.along = found ? t * dot3(ray.direction, params.forward) : march.along;
 #else
             bool found = false;
 #endif
-            bool adds = last && step_depth > 0.0;
+            bool adds = ends_step && step_depth > 0.0;
             float depth_lost = march.depth_lost;
             float depth = add_to(march.depth, step_depth, depth_lost);
             march.depth = adds ? depth : march.depth;
@@ -410,19 +439,26 @@ void main() {
             march.volume = last ? 0u : march.volume + 1u;
             bool dark = march.depth > DEEPEST;
             march.depth = dark ? OPAQUE : march.depth;
-            march.place = last ? (dark || found ? places : march.place + 1u) : march.place;
+            bool over = ends_step && (dark || found);
+            uint next_part = (closer || part > 0u) && !over && !is_known ? part + 1u : 0u;
+            march.place = over ? places : (ends_step && next_part == 0u ? march.place + 1u : march.place);
+            part = last ? next_part : part;
+            divided = divided && !last;
         }
         uint other = alone ? 0u : 1u;
         while (other > 0u) {
             --other;
-            uint next_at = at * params.volume_count + march.volume;
+            uint next_at = (at * params.volume_count + march.volume) * slots;
             ends[end_at] = before;
+            if (steep) ends[end_at + 1u] = ahead;
             end_at = next_at;
             before = ends[end_at];
+            ahead = ends[end_at + (slots - 1u)];
             volume = volumes[march.volume];
         }
     }
     ends[end_at] = before;
+    if (steep) ends[end_at + 1u] = ahead;
     bool done = march.place >= places;
     bool whole = is_whole(volumes[0]);
     bool again = march.state == 3u;
@@ -441,6 +477,8 @@ void main() {
 #endif
     }
     march.state = done ? 2u : (again ? 3u : 1u);
+    uint above = part | (divided ? 1u : 0u) << PART_BITS;
+    march.place = steep ? bitfieldInsert(march.place, above, PLACE_BITS, PART_BITS + 1) : march.place;
     marches[at] = march;
 #ifdef LIT
     march_lights[at] = sums;

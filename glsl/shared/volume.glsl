@@ -148,6 +148,20 @@ uint piece_of(VolumeInfo volume, float scalar, uint known) {
     return low;
 }
 
+// How many stops at or below a scalar bound a steep piece.
+float steep_stops(VolumeInfo volume, float scalar) {
+    uint piece = piece_of(volume, scalar, 0u);
+    float count = integral_to(volume.first_stop + max(piece, 1u) - 1u, 4u).w;
+    return piece > 0u ? count : 0.0;
+}
+
+// Whether a step between two scalars that ends at x is divided: the scalar may pass a steep piece within it.
+bool is_divided(VolumeInfo volume, float a, float b, vec3 x) {
+    uint cell = volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x));
+    float margin = uintBitsToFloat(volume_cell_at(cell).counts & ~uint(CELL_KINDS));
+    return steep_stops(volume, min(a, b) - margin) < steep_stops(volume, max(a, b) + margin);
+}
+
 // The mean from one scalar to another, neither of them beyond the stops of a piece. Colour and extinction are linear
 // there, and so is emission; constant beyond the outer stops.
 Shown mean_within(VolumeInfo volume, uint piece, float a, float b) {

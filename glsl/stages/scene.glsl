@@ -34,4 +34,5 @@
 #define SCENE_GLOWS 134217728 // A transfer function has an emission
 #define SCENE_DEPTHS 0x10000000u // Where half of the light is lost is asked for
 #define SCENE_GLOSSY 0x20000000u // Lights light a surface that scatters by another law than Lambert's, or from which rays go on
+#define SCENE_STEEP 0x40000000u // A transfer function is steep, and steps may be divided
 #endif

@@ -21,6 +21,8 @@
 #define CELL_LOOK 1 // VolumeCell.counts: something may be seen
 #define CELL_ABOVE 2 // VolumeCell.counts: where there is a scalar, it is above the isosurface
 #define CELL_BELOW 3 // VolumeCell.counts: where there is one, it is below
+#define CELL_KINDS 3 // VolumeCell.counts: the bits of these
+#define MARCH_PARTS 64 // Parts of a step that is divided
 
 // A field between points ([T] §6).
 struct VolumeInfo { // 96 bytes
@@ -44,7 +46,7 @@ struct VolumeInfo { // 96 bytes
 // A cell of a volume's grid.
 struct VolumeCell { // 8 bytes
     uint first;                      //   0 Point in the points of all volumes; the next cell's is the end.
-    uint counts;                     //   4 One of CELL_*.
+    uint counts;                     //   4 One of CELL_*; in the other bits, beside a steep transfer function, those of the float by which the scalar within a step may be off a straight line.
 };
 
 #ifdef TEXELS
@@ -75,7 +77,7 @@ struct VolumeStop { // 96 bytes
     float emission[3];               //  20 Radiance per unit of length.
     vec4 scattering_integral;        //  32 Of the colour times the extinction, and of the extinction.
     vec4 scattering_rest;            //  48 The second numbers of these.
-    vec4 emission_integral;          //  64 Of the emission; the fourth is 0.
+    vec4 emission_integral;          //  64 Of the emission; the fourth is how many stops up to this one bound a steep piece.
     vec4 emission_rest;              //  80 The second numbers of these.
 };
 
@@ -102,7 +104,7 @@ struct March { // 80 bytes
     float numerator;                 //  48 Of this volume's scalar.
     float denominator;               //  52 Of this volume's scalar.
     uint state;                      //  56 0: not begun, 1: on its way, 2: done, 3: once more, for along.
-    uint place;                      //  60 End of a step.
+    uint place;                      //  60 End of a step; from bit 24 on, its part, where 0 is the whole step; in bit 31, whether a volume so far divides it.
     uint volume;                     //  64 Volume.
     uint row;                        //  68 Of cells around the place.
     uint cursor;                     //  72 Points of the row that are done.
@@ -318,7 +320,7 @@ vec4 stop_emission_rest_at(uint at) {
 
 #define MARCHES 95 // By ray
 
-#define MARCH_ENDS 96 // The ends of steps by ray and volume; of lit ones four floats
+#define MARCH_ENDS 96 // The ends of steps by ray and volume, two each where steps may be divided; of lit ones four floats
 
 #define MARCH_LIGHTS 97 // By ray, where volumes are lit
 

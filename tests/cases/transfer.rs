@@ -97,6 +97,23 @@ fn shells_of_three_thousandths_have_no_rings_at_the_automatic_step() {
     // Weights that end at e^-5, not at e^-2: where points come into reach, the field itself jumps by less than a shell.
     against_finer_steps("ball", &of("radius = 0.2\nsmoothing = 0.004\n"), &set, 0.05);
     against_finer_steps("ball, wide", &of("radius = 0.3\nsmoothing = 0.009\n"), &set, 0.05);
+    // Those that end at e^-2, as they do by default: it jumps by half a shell, and a step passes by six points.
+    against_finer_steps("ball, by default", &of(""), &set, 0.05);
+}
+
+/// Points of a lattice come into reach many at once.
+#[test]
+fn shells_through_a_lattice_have_no_rings_at_the_automatic_step() {
+    let at = |i: usize| (i as f64) / 12.0 - 1.0;
+    let nodes = 0..25 * 25 * 25;
+    let positions = nodes.map(|i| [at(i % 25), at(i / 25 % 25), at(i / 625)]).collect();
+    let field = |p: [f64; 3]| p.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let set = with_attribute(set_of(positions), "s", field);
+    let transfer = shells([0.0, 1.2], 1.0, 0.7);
+    let text = format!(
+        "{VIEW}[[objects]]\npoints = \"lattice.ply\"\n[objects.volume]\nscalar = \"s\"\n{transfer}"
+    );
+    against_finer_steps("lattice", &text, &set, 0.05);
 }
 
 /// Particles of smoothed particle hydrodynamics, whose density falls off from the middle.
@@ -206,7 +223,7 @@ fn overlapping_shells_are_the_same_to_the_bit() {
         assert_same_bits("shells", &whole, &render_twin(&plan));
         assert!(whole.film.color.as_flattened().iter().all(|value| value.is_finite()));
         for cell in &mut plan.volumes.cells {
-            cell.counts = 1;
+            cell.counts |= 1;
         }
         (plan.cells_per_pass, plan.ray_loop) = (3, RayLoop::Images);
         assert_same_film("skipping and K", &whole.film, &bench.render(&plan).film);

@@ -15,7 +15,7 @@ const STEEPER_OF_FEW: usize = 60;
 const STRAIGHT: f64 = 0.02;
 
 /// The points of a volume.
-fn points_of(volumes: &Volumes, info: &VolumeInfo) -> std::ops::Range<usize> {
+pub(crate) fn points_of(volumes: &Volumes, info: &VolumeInfo) -> std::ops::Range<usize> {
     let at = |cell: u32| volumes.cells[(info.first_cell + cell) as usize].first as usize;
     at(0)..at(info.grid.cell_count())
 }

@@ -40,6 +40,7 @@ mod precision;
 mod scales;
 mod scene_bits;
 mod shapes;
+mod steep;
 mod transfer;
 mod volumes;
 

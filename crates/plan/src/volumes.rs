@@ -9,10 +9,11 @@ use crate::colors::attribute_values;
 use crate::field;
 use crate::missing::{Lacking, Missing};
 use crate::neighborhoods::{length, open_points, spacing};
+use crate::steep;
 use crate::transfer::{own_range, scaled, stops_of};
 use kernels::layout::{
     CELL_ABOVE, CELL_BELOW, CELL_LOOK, CELL_NOTHING, GridInfo, Polynomial, SCENE_GLOWS,
-    SCENE_MANY_VOLUMES, SCENE_PARTICLES, SCENE_WEIGHTS, SCENE_WHOLES, VOLUME_AVERAGE,
+    SCENE_MANY_VOLUMES, SCENE_PARTICLES, SCENE_STEEP, SCENE_WEIGHTS, SCENE_WHOLES, VOLUME_AVERAGE,
     VOLUME_EMISSION, VOLUME_EMITS, VOLUME_GRADIENT, VOLUME_INTEGRAL, VOLUME_ISOSURFACE,
     VOLUME_LIGHTS, VOLUME_MAXIMUM, VOLUME_SCATTERS, VOLUME_SHEPARD, VOLUME_SPH, VOLUME_SUM,
     VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
@@ -220,6 +221,7 @@ pub(crate) fn plan_volumes(
     if let Some(info) = volumes.infos.iter().find(refracts) {
         return Err(PlanError::OpenIsosurface { name: name(info) });
     }
+    steep::mark(&mut volumes);
     for (slot, info) in (cloud.points.len() as u32..)
         .zip(volumes.infos.iter_mut().filter(|info| info.mode == VOLUME_ISOSURFACE))
     {
@@ -320,6 +322,18 @@ impl Volumes {
         self.infos.iter().any(|info| info.shading != VOLUME_EMITS)
     }
 
+    /// Whether the transfer function of any is steep, and rays may divide steps.
+    #[must_use]
+    pub fn any_steep(&self) -> bool {
+        self.infos.iter().any(|info| steep::is_steep(self, info))
+    }
+
+    /// How many ends of steps a ray keeps of each volume.
+    #[must_use]
+    pub fn ends_kept(&self) -> u64 {
+        if self.any_steep() { 2 } else { 1 }
+    }
+
     /// `SCENE_*`: what kernels of these volumes have to do.
     pub(crate) fn scene_bits(&self) -> u32 {
         let glows = |info: &VolumeInfo| info.mode != VOLUME_ISOSURFACE && info.slot != 0;
@@ -329,6 +343,7 @@ impl Volumes {
             (SCENE_MANY_VOLUMES, self.infos.len() > 1),
             (SCENE_WHOLES, self.is_whole()),
             (SCENE_GLOWS, self.infos.iter().any(glows)),
+            (SCENE_STEEP, self.any_steep()),
         ]
         .into_iter()
         .fold(0, |bits, (bit, is_set)| if is_set { bits | bit } else { bits })

@@ -6,12 +6,13 @@ use crate::light::sample_light;
 use crate::media::{Media, transmittance};
 use crate::real::{NO_HIT, Real, V3};
 use kernels::layout::{
-    CELL_NOTHING, Light, ObjectInfo, VOLUME_AVERAGE, VOLUME_EMITS, VOLUME_GRADIENT,
-    VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_LIGHTS, VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH,
-    VolumeInfo, VolumeStop,
+    CELL_KINDS, CELL_NOTHING, Light, MARCH_PARTS, ObjectInfo, VOLUME_AVERAGE, VOLUME_EMISSION,
+    VOLUME_EMITS, VOLUME_GRADIENT, VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_LIGHTS,
+    VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo, VolumeStop,
 };
 use plan::Volumes;
 use std::f64::consts::FRAC_1_PI;
+use std::ops::ControlFlow;
 
 /// Optical depth through which nothing is seen, a transmittance of 1e-30.
 const DEEPEST: f64 = 69.077_552_8;
@@ -19,7 +20,7 @@ const DEEPEST: f64 = 69.077_552_8;
 const OPAQUE: f64 = NO_HIT;
 /// Scalar.
 const LARGEST: f64 = 1e38;
-pub(crate) const MOST_SAMPLES: f64 = 16_777_216.0;
+pub(crate) const MOST_SAMPLES: f64 = 16_777_215.0;
 /// A gradient over a point's reach, by the scalar: less is rounding.
 const FLATTEST: f32 = 1e-5;
 
@@ -59,6 +60,11 @@ impl<R: Real> Shown<R> {
         self.zip(self, |x, _| s * x)
     }
 
+    /// Whether it is more than nothing.
+    fn is_seen(&self) -> bool {
+        self.extinction > R::of(0.0) || self.emission.0.iter().any(|&of| of > R::of(0.0))
+    }
+
     /// One of the integrals from the first stop on.
     fn integral(of: [f32; 4], emission: [f32; 4]) -> Self {
         let [x, y, z, extinction] = of.map(R::of_f32);
@@ -93,11 +99,31 @@ fn mean_within<R: Real>(stops: &[VolumeStop], piece: usize, a: R, b: R) -> Shown
     }
 }
 
+/// How many stops at or below a scalar bound a steep piece.
+fn steep_stops<R: Real>(stops: &[VolumeStop], scalar: R) -> f32 {
+    let piece = stops.partition_point(|stop| R::of_f32(stop.value) <= scalar);
+    if piece > 0 { stops[piece - 1].emission_integral[3] } else { 0.0 }
+}
+
+/// Whether a step between two scalars that ends at x is divided.
+fn is_divided<R: Real>(volume: &VolumeInfo, volumes: &Volumes, [a, b]: [R; 2], x: V3<R>) -> bool {
+    let grid = Grid::<R>::from(&volume.grid);
+    let cell = volumes.cells[(volume.first_cell + grid.cell_id(grid.cell_of(x))) as usize];
+    let margin = R::of_f32(f32::from_bits(cell.counts & !CELL_KINDS));
+    let stops = stops_of(volume, volumes);
+    steep_stops(stops, a.min(b) - margin) < steep_stops(stops, a.max(b) + margin)
+}
+
+/// The stops of a volume's transfer function.
+fn stops_of<'a>(volume: &VolumeInfo, volumes: &'a Volumes) -> &'a [VolumeStop] {
+    let first = volume.first_stop as usize;
+    &volumes.stops[first..first + volume.stop_count as usize]
+}
+
 /// The mean of the transfer function over all scalars from one to another: pre-integration (Engel et al. 2001), exact
 /// between stops.
 pub fn mean_of<R: Real>(volume: &VolumeInfo, volumes: &Volumes, a: R, b: R) -> Shown<R> {
-    let first_stop = volume.first_stop as usize;
-    let stops = &volumes.stops[first_stop..first_stop + volume.stop_count as usize];
+    let stops = stops_of(volume, volumes);
     let (low, high) = (a.min(b), a.max(b));
     let piece = |scalar: R| stops.partition_point(|stop| R::of_f32(stop.value) <= scalar);
     let (lower, upper) = (piece(low), piece(high));
@@ -428,21 +454,79 @@ impl<'a, R: Real> Way<'a, R> {
         Self { ray, taking_part, volumes, from, span, step, steps, leaves: to < end }
     }
 
-    /// Every end of a step, from the first on; none where the ray passes no volume.
-    fn places(&self) -> impl Iterator<Item = Place<R>> {
-        let count = if self.steps > 0 { self.steps + 1 } else { 0 };
-        (0..count).map(|place| {
-            let begin = R::of_u32(place.max(1) - 1) * self.step;
-            let length = if place > 0 { self.step.min(self.span - begin) } else { R::of(0.0) };
-            let t = self.from + (begin + length);
-            Place {
-                x: self.ray.origin + self.ray.direction.times(t),
-                length,
-                begin: self.from + begin,
-                outside: (place == 0 && self.from > R::of(0.0))
-                    || (place == self.steps && self.leaves),
-            }
+    /// The end of a step, or of a part of it; part 0 is the whole step.
+    fn place(&self, place: u32, part: u32) -> Place<R> {
+        let begin = R::of_u32(place.max(1) - 1) * self.step;
+        let length = if place > 0 { self.step.min(self.span - begin) } else { R::of(0.0) };
+        let (begin, length) = if part > 0 {
+            let length = length * R::of(1.0 / f64::from(MARCH_PARTS));
+            (begin + R::of_u32(part - 1) * length, length)
+        } else {
+            (begin, length)
+        };
+        let t = self.from + (begin + length);
+        Place {
+            x: self.ray.origin + self.ray.direction.times(t),
+            length,
+            begin: self.from + begin,
+            outside: (place == 0 && self.from > R::of(0.0))
+                || (place == self.steps && part == 0 && self.leaves),
+        }
+    }
+
+    /// What all volumes show at a place.
+    fn look_all(&self, place: &Place<R>, lighting: Option<Lighting<'_, R>>) -> Vec<End<R>> {
+        self.taking_part.iter().map(|volume| self.look(volume, place, lighting)).collect()
+    }
+
+    /// Whether a step is divided: a scalar may pass a steep piece of its transfer function within it, or something is
+    /// seen up to a border of what points reach.
+    fn is_divided(&self, there: &[End<R>], here: &[End<R>], x: V3<R>) -> bool {
+        if !self.volumes.any_steep() {
+            return false;
+        }
+        let ends = there.iter().zip(here);
+        self.taking_part.iter().zip(ends).any(|(volume, (there, here))| {
+            let between = Between::of(volume, *there, *here);
+            let Some(of) = between.filter(|_| volume.mode == VOLUME_EMISSION) else { return false };
+            let border = of.share < R::of(1.0);
+            let seen = || mean_of(volume, self.volumes, of.from, of.to).is_seen();
+            border && seen() || is_divided(volume, self.volumes, [of.from, of.to], x)
         })
+    }
+
+    /// Hands out each step, or each part of one that is divided, with what each volume shows at both of its ends.
+    fn walk(
+        &self,
+        lighting: Option<Lighting<'_, R>>,
+        mut visit: impl FnMut(&Place<R>, &[End<R>], &[End<R>]) -> ControlFlow<()>,
+    ) {
+        let mut there = vec![End::Unseen; self.taking_part.len()];
+        for at in 0..if self.steps > 0 { self.steps + 1 } else { 0 } {
+            let place = self.place(at, 0);
+            let here = self.look_all(&place, lighting);
+            let mut done = ControlFlow::Continue(());
+            if self.is_divided(&there, &here, place.x) {
+                for part in 1..=MARCH_PARTS {
+                    let place = self.place(at, part);
+                    let next = match part == MARCH_PARTS {
+                        true => here.clone(),
+                        false => self.look_all(&place, lighting),
+                    };
+                    done = visit(&place, &there, &next);
+                    if done.is_break() {
+                        break;
+                    }
+                    there = next;
+                }
+            } else {
+                done = visit(&place, &there, &here);
+            }
+            if done.is_break() {
+                return;
+            }
+            there = here;
+        }
     }
 
     fn look(
@@ -484,15 +568,13 @@ pub fn march<R: Real>(
     let zero = R::of(0.0);
     let way = Way::of(ray, end, media, volumes);
     let medium = media.medium(objects);
-    let mut ends = vec![End::Unseen; way.taking_part.len()];
     let (mut color, mut depth) = ([Sum::zero(); 3], Sum::<R>::zero());
     let mut whole = [Sum::zero(); 2]; // the greatest scalar or the integral of all, and the length in reach
     let mut met = false;
-    for place in way.places() {
+    way.walk(lighting, |place, there, here| {
         let (mut step_color, mut step_extinction) = (V3::splat(zero), zero);
-        for (volume, there) in way.taking_part.iter().zip(&mut ends) {
-            let here = way.look(volume, &place, lighting);
-            let between = Between::of(volume, std::mem::replace(there, here), here);
+        for (volume, (&there, &here)) in way.taking_part.iter().zip(there.iter().zip(here)) {
+            let between = Between::of(volume, there, here);
             if is_whole(volume) {
                 let counted = between.as_ref().map_or(zero, |of| of.share * place.length);
                 if volume.mode != VOLUME_MAXIMUM {
@@ -535,9 +617,10 @@ pub fn march<R: Real>(
         }
         if depth.sum > R::of(DEEPEST) {
             depth.sum = R::of(OPAQUE);
-            break;
+            return ControlFlow::Break(());
         }
-    }
+        ControlFlow::Continue(())
+    });
     match volumes.infos.first() {
         Some(only) if is_whole(only) => shown(only, volumes, whole.map(|of| of.sum)),
         _ => March { color: V3(color.map(|of| of.sum)), depth: depth.sum, along: R::of(-1.0) },
@@ -558,13 +641,12 @@ pub fn half_lost<R: Real>(
         return None;
     }
     let way = Way::of(ray, end, media, volumes);
-    let mut ends = vec![End::Unseen; way.taking_part.len()];
     let mut depth = Sum::<R>::zero();
-    for place in way.places() {
+    let mut lost = None;
+    way.walk(None, |place, there, here| {
         let mut extinction = R::of(0.0);
-        for (volume, there) in way.taking_part.iter().zip(&mut ends) {
-            let here = way.look(volume, &place, None);
-            if let Some(of) = Between::of(volume, std::mem::replace(there, here), here) {
+        for (volume, (&there, &here)) in way.taking_part.iter().zip(there.iter().zip(here)) {
+            if let Some(of) = Between::of(volume, there, here) {
                 let seen = mean_of(volume, volumes, of.from, of.to);
                 extinction = extinction + of.share * seen.extinction;
             }
@@ -573,11 +655,13 @@ pub fn half_lost<R: Real>(
         let missing = wanted - depth.sum;
         if step_depth > R::of(0.0) && step_depth >= missing {
             let part = missing.max(R::of(0.0)) / step_depth;
-            return Some(place.begin + place.length * part);
+            lost = Some(place.begin + place.length * part);
+            return ControlFlow::Break(());
         }
         if step_depth > R::of(0.0) {
             depth.add(step_depth);
         }
-    }
-    None
+        ControlFlow::Continue(())
+    });
+    lost
 }

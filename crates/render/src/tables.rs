@@ -231,7 +231,7 @@ impl VolumeBuffers {
         };
         let rays = u64::from(rays);
         let (lit, points) = (volumes.any_lit(), volumes.points.len() as u64);
-        let count = volumes.infos.len() as u64;
+        let count = volumes.infos.len() as u64 * volumes.ends_kept();
         let own = Self {
             marches: of("marches", true, rays, size_of::<March>())?,
             march_lights: of("light of marches", lit, rays, size_of::<MarchLight>())?,

@@ -66,6 +66,8 @@ stage! {
         SCENE_DEPTHS = 268_435_456;
         /// Lights light a surface that scatters by another law than Lambert's, or from which rays go on.
         SCENE_GLOSSY = 536_870_912;
+        /// A transfer function is steep, and steps may be divided.
+        SCENE_STEEP = 1_073_741_824;
     }
     bindings from 110 {
     }

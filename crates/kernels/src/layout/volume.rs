@@ -39,6 +39,10 @@ stage! {
         CELL_ABOVE = 2;
         /// [`VolumeCell::counts`]: where there is one, it is below.
         CELL_BELOW = 3;
+        /// [`VolumeCell::counts`]: the bits of these.
+        CELL_KINDS = 3;
+        /// Parts of a step that is divided.
+        MARCH_PARTS = 64;
     }
     bindings from 90 {
         /// The volumes of the scene.
@@ -53,7 +57,7 @@ stage! {
         VOLUME_STOPS: VolumeStop as stop;
         /// By ray.
         MARCHES: March;
-        /// The ends of steps by ray and volume; of lit ones four floats.
+        /// The ends of steps by ray and volume, two each where steps may be divided; of lit ones four floats.
         MARCH_ENDS: f32;
         /// By ray, where volumes are lit.
         MARCH_LIGHTS: MarchLight;
@@ -101,7 +105,8 @@ stage! {
         VolumeCell {
             /// Point in the points of all volumes; the next cell's is the end.
             first: u32,
-            /// One of `CELL_*`.
+            /// One of `CELL_*`; in the other bits, beside a steep transfer function, those of the float by which the scalar
+            /// within a step may be off a straight line.
             counts: u32,
         }
         /// A point of a volume.
@@ -126,7 +131,7 @@ stage! {
             scattering_integral: [f32; 4],
             /// The second numbers of these.
             scattering_rest: [f32; 4],
-            /// Of the emission; the fourth is 0.
+            /// Of the emission; the fourth is how many stops up to this one bound a steep piece.
             emission_integral: [f32; 4],
             /// The second numbers of these.
             emission_rest: [f32; 4],
@@ -153,7 +158,8 @@ stage! {
             denominator: f32,
             /// 0: not begun, 1: on its way, 2: done, 3: once more, for `along`.
             state: u32,
-            /// End of a step.
+            /// End of a step; from bit 24 on, its part, where 0 is the whole step; in bit 31, whether a volume so far
+            /// divides it.
             place: u32,
             /// Volume.
             volume: u32,
