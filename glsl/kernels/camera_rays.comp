@@ -1,7 +1,6 @@
-// camera_rays: the camera's ray of each pixel, in the first cell that it meets (method, section 6).
+// camera_rays: the camera's ray of each pixel (method, section 6).
 //
-// reads   grid
-//         filter_steps     where the integral of the reconstruction filter takes equal steps, in pixels
+// reads   filter_steps     where the integral of the reconstruction filter takes equal steps, in pixels
 //                          from the centre of a pixel
 //         start            the path of every ray, but for its pixel
 // writes  the ray state, paths   every pixel, and rays that are none where the tile ends before its
@@ -18,7 +17,6 @@
 #include "stages/rays.glsl"
 #include "stages/wave.glsl"
 #include "sampler.glsl"
-#include "levels.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
@@ -57,6 +55,7 @@ void main() {
     vec3 direction = camera_direction(slope);
     bool from_eye = start.x == 0.0 && start.y == 0.0;
     vec3 origin = from_eye ? params.eye : (params.eye + start.x * params.right) + start.y * params.up;
-    uint cell = enter_scene(origin, direction);
-    store_ray(ray, new_ray(origin, direction, outside ? NONE : cell, NONE));
+    Ray made = new_ray(origin, direction, NONE);
+    made.cell = outside ? NONE : made.cell;
+    store_ray(ray, made);
 }

@@ -36,7 +36,6 @@
 #endif
 #include "direction.glsl"
 #include "environment.glsl"
-#include "levels.glsl"
 #include "index.glsl"
 #include "objects.glsl"
 
@@ -78,11 +77,13 @@ void main() {
     uint at = (group.y * groups.x + group.x) * uint(TILE_GROUP) + within;
     bool outside = any(greaterThanEqual(pixel, params.tile_size));
     vec3 d = camera_direction(place_in_view(params.tile_origin + pixel, vec2(0.0)));
-    Ray ray = new_ray(params.eye, d, outside ? NONE : enter_scene(params.eye, d), NONE);
+    Ray ray = new_ray(params.eye, d, NONE);
+    ray.cell = outside ? NONE : ray.cell;
 #ifdef TREE
     TreePlace place = before_root();
     bool alive = walk_tree(ray, place, params.tree, params.work, false, NONE);
 #else
+    begin_discs(ray);
     uvec2 tile = pixel / uint(DISC_TILE);
     Packet packet = packet_from(group * 8u + pixel_within(within & ~(PACKET - 1u)));
     walk_discs(ray, disc_range_at(tile.y * screen_tiles(params.tile_size).x + tile.x), params.ranks, params.work, packet);

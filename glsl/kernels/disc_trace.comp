@@ -2,12 +2,15 @@
 // (section 4 of the paper).
 //
 // reads   the ray state, polynomials, the lists of screen tiles
-// writes  the ray state    every ray, also those that are done: the images swap after this
+//         live_rays        those that live, where few of a wave do
+// writes  the ray state    every ray, also those that are done: the images swap after this. Of listed rays
+//                          in place, theirs alone
 //         live             how many rays have not ended yet
-// runs    one invocation per pixel of the tile; dispatched until no ray lives
+//         marks            one bit for each of these, by its place in the list; must be zero before
+// runs    one invocation per ray of the wave; dispatched until no ray lives
 // twin    crates/reference/src/disc_trace.rs
 //
-// A workgroup is one screen tile. A ray that `camera_rays` found to miss the grid misses every point.
+// Where no rays are listed, a workgroup is one screen tile.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
@@ -16,17 +19,18 @@
 #include "stages/discs.glsl"
 #include "stages/rays.glsl"
 #include "disc_walk.glsl"
-#include "index.glsl"
+#include "structure.glsl"
 
-layout(local_size_x = TILE_GROUP) in;
-layout(std430, binding = LIVE) buffer Live { uint live; };
+layout(local_size_x = LINE_GROUP) in;
 layout(push_constant) uniform Push { DiscTraceParams params; };
 
 void main() {
-    uvec2 tile = tile_pixel() / uint(DISC_TILE);
-    uint at = tile_ray(params.tile_size);
-    Ray ray = load_ray(at);
-    walk_discs(ray, disc_range_at(tile.y * screen_tiles(params.tile_size).x + tile.x), params.ranks, params.work);
-    store_progress(at, ray);
-    if (ray.cell != NONE) atomicAdd(live, 1u);
+    uint place = list_index();
+    if (place >= params.wave.ray_count) return;
+    uint index = ray_at(place, params.wave.listed);
+    Ray ray = load_ray(index);
+    begin_discs(ray);
+    walk_discs(ray, disc_range_at(index / uint(TILE_GROUP)), params.ranks, params.wave.work);
+    store_progress(index, ray);
+    if (ray.cell != NONE) count_live(place);
 }

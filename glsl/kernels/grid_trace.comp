@@ -15,8 +15,7 @@
 // where that hit is no farther than the exit of its cell, or where it leaves the grid. K = 1 is the
 // paper's loop; cells without points do not count. Any K gives the same bits: a pass can end after any
 // cell, and, so that no dispatch runs away, after any 32 points of one; cell and cursor say where to go on.
-// With LEAVING, rays start on surfaces, whose own sheet they do not meet again at once, and may end at
-// any hit: those towards lights. Light for the points of a volume passes the surface of its own object.
+// LEAVING as in structure.glsl.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
@@ -31,12 +30,9 @@
 #include "shape.glsl"
 #include "polynomial.glsl"
 #include "state.glsl"
-#include "index.glsl"
+#include "structure.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = LIVE) buffer Live { uint live; };
-layout(std430, binding = MARKS) buffer Marks { uint marks[]; };
-layout(std430, binding = LIVE_RAYS) readonly buffer LiveRays { uint live_rays[]; };
 layout(push_constant) uniform Push { TraceParams params; };
 
 #define BATCH 32u // points tested before any is solved: one bit each
@@ -44,14 +40,18 @@ layout(push_constant) uniform Push { TraceParams params; };
 void main() {
     uint place = list_index();
     if (place >= params.ray_count) return;
-    uint index = params.listed != 0u ? live_rays[place] : place;
+    uint index = ray_at(place, params.listed);
     Ray ray = load_ray(index);
 
     vec3 o = ray.origin, d = ray.direction;
     uint cells_left = params.cells;
     uint work_left = params.work;
-    bool alive = ray.cell != NONE;
     uint cell = ray.cell;
+    if (cell == RAY_STARTS) {
+        cell = enter_scene(o, d, ray.after);
+        ray.entry = cell;
+    }
+    bool alive = cell != NONE;
     uint level = alive ? level_of_cell(cell) : 0u;
     GridLevel here = levels[level];
     uvec3 at = cell_of_id(here.grid, alive ? cell - here.first_cell : 0u); // once: lavapipe divides integers lane by lane
@@ -166,8 +166,5 @@ void main() {
     ray.cell = cell;
     ray.cursor = next - range.x;
     store_progress(index, ray);
-    if (alive) {
-        atomicAdd(live, 1u);
-        atomicOr(marks[place / 32u], 1u << (place & 31u));
-    }
+    if (alive) count_live(place);
 }

@@ -1,6 +1,6 @@
 // point_rays: the rays from the points of a volume towards one light.
 //
-// reads   volumes, their cells and points, lights, grid
+// reads   volumes, their cells and points, lights
 // writes  the shadow rays' state
 //         paths            inside the volume's own object; as shadow_media has them
 //         light_sums       1: all of the light
@@ -17,7 +17,7 @@
 #include "stages/wave.glsl"
 #include "stages/volume.glsl"
 #include "math.glsl"
-#include "levels.glsl"
+#include "grid.glsl"
 #include "light.glsl"
 #include "volume.glsl"
 #include "state.glsl"
@@ -37,7 +37,8 @@ void main() {
     LightSample light = sample_light(lights[params.light], x, vec2(0.5));
     VolumeInfo volume = volumes[params.volume];
     bool seen = volume_cell_at(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x))).counts != CELL_NOTHING;
-    Ray ray = new_ray(x, light.towards, seen ? enter_scene(x, light.towards) : NONE, NONE);
+    Ray ray = new_ray(x, light.towards, NONE);
+    ray.cell = seen ? ray.cell : NONE;
     ray.hit_t = light.distance;
     store_ray(at, ray);
     paths[at].pixel = 0u;

@@ -1,14 +1,11 @@
 // resume: sends the rays whose hit was refined away on to the next.
 //
-// reads   the ray state, grid
+// reads   the ray state
 //         hits
-// writes  the ray state    rejected rays alone, in place: they are in the cell of the hit they lost
+// writes  the ray state    rejected rays alone, in place: their structure begins with them again, after the hit they lost
 //         marks            one bit for each of these; must be zero before
 // runs    one invocation per ray of the wave
 // twin    crates/reference/src/refine.rs
-//
-// A polynomial that is hit behind that point is listed in the cell of its hit, which no ray has passed
-// there.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
@@ -16,7 +13,6 @@
 #include "stages/points.glsl"
 #include "stages/scene.glsl"
 #include "stages/rays.glsl"
-#include "levels.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
@@ -34,9 +30,7 @@ void main() {
     ray.after = ray.hit_t;
     ray.hit_t = NO_HIT;
     ray.hit_slot = NONE;
-    ray.cell = cell_around(0u, ray.origin + ray.after * ray.direction);
-    if (scene_has(SCENE_LEVELS)) ray.cell = enter_from(0u, ray.origin, ray.direction, vec2(ray.after, NO_HIT));
-    ray.entry = ray.cell;
+    ray.cell = RAY_STARTS;
     ray.cursor = 0u;
     store_ray(at, ray);
     atomicOr(marks[at / 32u], 1u << (at & 31u));

@@ -1,7 +1,7 @@
 // scatter: the reflected and refracted rays that a wave makes (section 5 of the paper; method,
 // section 4).
 //
-// reads   the ray state, grid, hits, objects, polynomials, paths
+// reads   the ray state, hits, objects, polynomials, paths
 //         scattering_rays  the rays that hit a surface that sends rays on
 //         images, texels   the environment
 //         next_marks       which of a wave's rays make one ray or three
@@ -24,7 +24,6 @@
 #include "stages/film.glsl"
 #include "environment.glsl"
 #include "math.glsl"
-#include "levels.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
@@ -82,8 +81,7 @@ void send(uint ray, Path path, Place place, Fate fate, Hit hit, uint slot, uint 
     vec3 throughput = path.throughput * sent.weight;
     if (goes_on) {
         store_path(to, ray, path, throughput, how, !fate.passes, !sent.reflects, place.object, fate.crossing.place);
-        uint cell = enter_scene(hit.position, sent.direction);
-        store_ray(to, new_ray(hit.position, sent.direction, cell, slot));
+        store_ray(to, new_ray(hit.position, sent.direction, slot));
         if (sent.reflects) atomicAdd(reflected_count, 1u);
     } else {
         how |= sent.reflects ? uint(PATH_REFLECTED) : 0u;

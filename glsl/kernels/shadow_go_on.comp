@@ -1,12 +1,12 @@
 // shadow_go_on: shadow rays on the other side of the surfaces that let them through.
 //
-// reads   the shadow rays' state, shadow_paths, light_sums, polynomials, objects, grid
+// reads   the shadow rays' state, shadow_paths, light_sums, polynomials, objects
 // writes  the shadow rays' state      rays that go on, in place; of those that have arrived, so that no volume counts
 //                          twice, a way of no length
 //         shadow_paths     what they are inside, or that they have ended
 //         film             counts, if asked for
-//         live             how many go on and may meet a surface yet; then how many go on
-//         marks            one bit for each of the first of these; must be zero before
+//         live             how many go on
+//         marks            one bit for each of these; must be zero before
 // runs    one invocation per shadow ray
 // twin    crates/reference/src/to_light/shadow_go_on.rs
 #version 460
@@ -18,13 +18,12 @@
 #include "stages/wave.glsl"
 #include "stages/film.glsl"
 #include "math.glsl"
-#include "levels.glsl"
 #include "polynomial.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = LIVE) buffer Live { uint live; uint going; };
+layout(std430, binding = LIVE) buffer Live { uint live; };
 layout(std430, binding = MARKS) buffer Marks { uint marks[]; };
 layout(std430, binding = FILM) buffer Film { FilmPixel film[]; };
 layout(std430, binding = LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
@@ -75,11 +74,10 @@ void main() {
     vec3 x = p.center_trust.xyz + y;
     float left = shadow_paths[at].depth;
     left = left < NO_HIT ? max(left - ray.hit_t, 0.0) : left;
-    Ray next = new_ray(x, ray.direction, enter_scene(x, ray.direction), slot);
+    Ray next = new_ray(x, ray.direction, slot);
     next.hit_t = left;
     shadow_paths[at].depth = left;
     store_ray(at, next);
-    atomicAdd(going, 1u);
-    if (next.cell != NONE) atomicAdd(live, 1u);
-    if (next.cell != NONE) atomicOr(marks[at / 32u], 1u << (at & 31u));
+    atomicAdd(live, 1u);
+    atomicOr(marks[at / 32u], 1u << (at & 31u));
 }

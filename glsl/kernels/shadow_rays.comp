@@ -1,7 +1,7 @@
 // shadow_rays: the rays from the lit hits of a wave towards one light (section 5 of the paper).
 //
 // reads   the shadow rays' state      as the rays towards the light before this one left it
-//         lit_hits, lights, grid, polynomials, objects
+//         lit_hits, lights, polynomials, objects
 //         lit_rays         the rays that hit a lit surface
 // writes  the shadow rays' state      towards this light; none where it scatters nothing of it
 //         light_sums       what the lights before this one bring, and what this one would
@@ -20,7 +20,6 @@
 #include "stages/film.glsl"
 #include "direction.glsl"
 #include "math.glsl"
-#include "levels.glsl"
 #include "light.glsl"
 #include "state.glsl"
 #include "index.glsl"
@@ -64,7 +63,7 @@ void main() {
     light_sums[at].arriving = arriving;
     Ray shadow = no_ray();
     if (arrives) {
-        shadow = new_ray(hit.position, light.towards, enter_scene(hit.position, light.towards), hit.slot);
+        shadow = new_ray(hit.position, light.towards, hit.slot);
         shadow.hit_t = light.distance;
     } else {
         atomicAdd(dark_count, 1u);

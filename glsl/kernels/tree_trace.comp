@@ -9,7 +9,7 @@
 // runs    one invocation per ray of the wave; dispatched until no ray lives
 // twin    crates/reference/src/grid_trace.rs (hits are those of any structure)
 //
-// What grid_trace finds, to the bit: the nearest hit of all polynomials, or of equals the first. LEAVING as there.
+// LEAVING as in structure.glsl.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define QUEUE
@@ -22,31 +22,27 @@
 #include "math.glsl"
 #include "scene.glsl"
 #include "tree_walk.glsl"
-#include "index.glsl"
+#include "structure.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
-layout(std430, binding = LIVE) buffer Live { uint live; };
-layout(std430, binding = MARKS) buffer Marks { uint marks[]; };
-layout(std430, binding = LIVE_RAYS) readonly buffer LiveRays { uint live_rays[]; };
 layout(push_constant) uniform Push { TreeTraceParams params; };
 
 void main() {
     uint place = list_index();
-    if (place >= params.ray_count) return;
-    uint index = params.listed != 0u ? live_rays[place] : place;
+    if (place >= params.wave.ray_count) return;
+    uint index = ray_at(place, params.wave.listed);
     Ray ray = load_ray(index);
     TreePlace at = before_root();
-    if (params.starts == 0u) {
+    if (ray.cell != RAY_STARTS) {
         uvec2 more = state_start_at(index).zw;
         at = TreePlace(ray.cell, uvec2(ray.cursor, more.x), more.y);
     }
-    bool alive = walk_tree(ray, at, params.tree, params.work, params.any_hit != 0u, params.passed);
+    bool alive = walk_tree(ray, at, params.tree, params.wave.work, params.wave.any_hit != 0u, params.wave.passed);
     state_out[index].position.w = floatBitsToUint(ray.hit_t);
     state_out[index].direction.w = ray.cells;
     state_out[index].cell = uvec4(alive ? at.node : NONE, at.pending.x, ray.tests, ray.hit_slot);
     if (alive) {
         state_out[index].start.zw = uvec2(at.pending.y, at.backwards);
-        atomicAdd(live, 1u);
-        atomicOr(marks[place / 32u], 1u << (place & 31u));
+        count_live(place);
     }
 }

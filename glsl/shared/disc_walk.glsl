@@ -13,6 +13,7 @@
 #include "stages/search.glsl"
 #include "stages/discs.glsl"
 #include "disc.glsl"
+#include "levels.glsl"
 #ifdef PACKETS
 #include "packet.glsl"
 #endif
@@ -54,6 +55,11 @@ uint met_by_packet(uint points, uvec4 leaves, Packet packet, vec3 eye) {
     return points & ~missed;
 }
 #endif
+
+// A ray that misses the boxes of all grids misses every point, and tests none.
+void begin_discs(inout Ray ray) {
+    if (ray.cell == RAY_STARTS) ray.cell = enter_scene(ray.origin, ray.direction, 0.0);
+}
 
 // Goes on with the ray, whose cell is NONE if it has ended, and afterwards where it has. In PACKETS the rays of one
 // go together, from the beginning of their list.

@@ -38,9 +38,9 @@ uint enter_from(uint level, vec3 o, vec3 d, vec2 range) {
     return cell;
 }
 
-// The first cell of a ray that starts anywhere, or NONE where it misses all grids.
-uint enter_scene(vec3 o, vec3 d) {
-    vec2 range = vec2(0.0, NO_HIT);
+// The first cell of a ray of which hits up to `after` do not count; NONE where it misses all grids beyond.
+uint enter_scene(vec3 o, vec3 d, float after) {
+    vec2 range = vec2(after, NO_HIT);
     uint cell = NONE;
     if (scene_has(SCENE_LEVELS)) {
         cell = enter_from(0u, o, d, range);

@@ -18,8 +18,8 @@ struct Ray {
     float hit_t;     // nearest hit so far, or NO_HIT
     vec3 direction;  // unit length
     uint cells;      // cells crossed so far
-    uint cell;       // the one it is in; NONE: the ray is done
-    uint cursor;     // how many of that cell's points it has tested
+    uint cell;       // where in its structure it is; RAY_STARTS: at its beginning; NONE: the ray is done
+    uint cursor;     // how many of the points there it has tested
     uint tests;      // points tested so far
     uint hit_slot;   // the point hit, or NONE
     uint left;       // the point whose surface it starts on, or NONE
@@ -27,12 +27,15 @@ struct Ray {
     uint entry;      // the cell where it came into the grid that it is in, of several
 };
 
-Ray new_ray(vec3 origin, vec3 direction, uint cell, uint left) {
-    return Ray(origin, NO_HIT, direction, 0u, cell, 0u, 0u, NONE, left, 0.0, cell);
+// One that its structure has yet to begin with (structure.glsl).
+Ray new_ray(vec3 origin, vec3 direction, uint left) {
+    return Ray(origin, NO_HIT, direction, 0u, RAY_STARTS, 0u, 0u, NONE, left, 0.0, NONE);
 }
 
 Ray no_ray() {
-    return new_ray(vec3(0.0), vec3(0.0, 0.0, 1.0), NONE, NONE);
+    Ray ray = new_ray(vec3(0.0), vec3(0.0, 0.0, 1.0), NONE);
+    ray.cell = NONE;
+    return ray;
 }
 
 #ifdef STATE_READS

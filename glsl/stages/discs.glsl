@@ -24,10 +24,9 @@ struct DiscParams { // 120 bytes
 };
 
 // Push constants of disc_trace.
-struct DiscTraceParams { // 28 bytes
-    DepthRanks ranks;                //   0 How pairs of a screen tile are ordered.
-    uvec2 tile_size;                 //  16 Columns and rows of the tile of the picture.
-    uint work;                       //  24 Loop iterations a ray may spend in this pass.
+struct DiscTraceParams { // 40 bytes
+    TraceParams wave;                //   0 Of any structure.
+    DepthRanks ranks;                //  24 How pairs of a screen tile are ordered.
 };
 
 #define DISC_OFFSETS 49 // Counts, then offsets, by leaf

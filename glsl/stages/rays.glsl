@@ -4,6 +4,7 @@
 #ifndef STAGE_RAYS_GLSL
 #define STAGE_RAYS_GLSL
 
+#define RAY_STARTS 0xfffffffeu // A ray's cell before its structure has begun with it (structure.glsl)
 #define STATE_ROW 1024 // Texels a row of the ray state's images
 #define PASSED_NEAR 0x80000000u // Beside an object in TraceParams.passed: its surface is not there near the ray's start alone
 #define HIT_NONE 0 // A pixel that hit nothing
@@ -38,7 +39,7 @@ struct CameraParams { // 96 bytes
     uint seed;                       //  92 Of all that is random.
 };
 
-// Push constants of grid_trace.
+// Push constants of the kernel of any structure that rays go through (structure.glsl).
 struct TraceParams { // 24 bytes
     uint ray_count;                  //   0 Rays of the wave, or of those that are listed.
     uint cells;                      //   4 K: cells a ray may cross in this pass.
@@ -52,7 +53,7 @@ struct TraceParams { // 24 bytes
 struct StateRay { // 64 bytes
     uvec4 position;                  //   0 Origin in centred scene space, and the nearest hit so far.
     uvec4 direction;                 //  16 Unit direction, and how many cells were crossed.
-    uvec4 cell;                      //  32 Cell or NONE, cursor in it, points tested, slot of the hit or NONE.
+    uvec4 cell;                      //  32 Cell, RAY_STARTS or NONE, cursor in it, points tested, slot of the hit or NONE.
     uvec4 start;                     //  48 The point whose surface it starts on or NONE, up to where hits do not count, the cell where it came into the grid that it is in, of several; one unused.
 };
 

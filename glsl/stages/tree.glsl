@@ -4,6 +4,7 @@
 #ifndef STAGE_TREE_GLSL
 #define STAGE_TREE_GLSL
 #include "stages/search.glsl"
+#include "stages/rays.glsl"
 
 // Where the leaves of the tree are.
 struct TreeInfo { // 8 bytes
@@ -23,12 +24,7 @@ struct TreeLevelParams { // 24 bytes
 
 // Push constants of tree_trace.
 struct TreeTraceParams { // 32 bytes
-    uint ray_count;                  //   0 As in TraceParams.
-    uint work;                       //   4 As in TraceParams.
-    uint any_hit;                    //   8 As in TraceParams.
-    uint listed;                     //  12 As in TraceParams.
-    uint passed;                     //  16 As in TraceParams.
-    uint starts;                     //  20 1: rays are at the root.
+    TraceParams wave;                //   0 Of any structure.
     TreeInfo tree;                   //  24 The tree's.
 };
 

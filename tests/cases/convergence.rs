@@ -127,7 +127,7 @@ fn hit_of(
         }
         match around.refine(ray, hit) {
             Refined::Accepted(hit, _) => return Some(hit),
-            Refined::Rejected(_) => resume(ray, around.levels),
+            Refined::Rejected(_) => resume(ray),
         }
     }
 }
@@ -160,8 +160,7 @@ fn measure(shape: &Shape, polynomial: &str, project: bool, count: u32) -> Errors
     let camera = plan.camera_of(&plan.window, 0);
     let (mut distances, mut angles) = (Vec::new(), Vec::new());
     for pixel in 0..SIZE[0] * SIZE[1] {
-        let mut ray =
-            camera_ray(&camera, &plan.filter, &levels, [pixel % SIZE[0], pixel / SIZE[0]]);
+        let mut ray = camera_ray(&camera, &plan.filter, [pixel % SIZE[0], pixel / SIZE[0]]);
         let Some(hit) = hit_of(&reference, &around, &mut ray) else { continue };
         let (distance, normal) = (shape.nearest)(hit.position + V3(plan.cloud.origin));
         if -normal.dot(ray.direction) > GRAZING {

@@ -7,7 +7,7 @@ use crate::{again, ending, interrupt, memory};
 use film::Film;
 use gpu::{Device, DeviceChoice, GpuError, Instance, InstanceOptions};
 use kernels::layout::FitOutcome;
-use plan::{Picture, Plan, Rays};
+use plan::{Picture, Plan, Rays, RaysFrom, StructureKind};
 use points::Grids;
 use points::device::Tree;
 use reference::Reference;
@@ -269,6 +269,18 @@ impl Built {
             BuiltOn::Gpu(renderer) => renderer.surfaces().tree.as_ref(),
             BuiltOn::Single(_) | BuiltOn::Double(_) => None,
         }
+    }
+
+    /// What rays go through, as scene files name it; the CPU has no tree.
+    pub fn through(&self, plan: &Plan, from: RaysFrom<'_>) -> &'static str {
+        let has = |kind: &StructureKind| match &self.surfaces {
+            BuiltOn::Gpu(renderer) => renderer.has(*kind),
+            BuiltOn::Single(_) | BuiltOn::Double(_) => {
+                matches!(kind, StructureKind::Grid | StructureKind::Discs)
+            }
+        };
+        let kind = plan.structures(from).into_iter().find(has);
+        kind.unwrap_or(StructureKind::Grid).name()
     }
 
     /// Where the ray state lives on the device; the CPU has none.

@@ -5,7 +5,7 @@ use film::Film;
 use kernels::layout::{
     FIT_DISC, FIT_FULL, FIT_INCOMPLETE, FIT_NO_SURFACE, FIT_PLANE, FIT_SPHERE, GridLevel,
 };
-use plan::{Choice, Plan};
+use plan::{Choice, Plan, RaysFrom};
 use render::Traversal;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -307,15 +307,12 @@ impl Row {
             rays,
             rays_per_second: RaysPerSecond::new(&rays, trace_ms.median, &frame.traversal),
             cells_per_pass: plan.cells_per_pass,
-            primary: match built.tree() {
-                _ if plan.tiles().iter().any(|tile| plan.by_discs(tile)) => "discs",
-                Some(_) if plan.camera_by_tree() => "tree",
-                _ => "grid",
+            primary: {
+                let tiles = plan.tiles();
+                let by_discs = tiles.iter().find(|tile| plan.by_discs(tile));
+                built.through(plan, by_discs.map_or(RaysFrom::Camera, RaysFrom::Tile))
             },
-            secondary: match built.tree() {
-                Some(_) if plan.by_tree() => "tree",
-                _ => "grid",
-            },
+            secondary: built.through(plan, RaysFrom::Surface),
             ray_loop: built.ray_loop(),
             passes: frame.passes,
             tests_per_ray: frame.tests as f64 / frame.rays.all().max(1) as f64,

@@ -1,7 +1,6 @@
-//! How rays find their hits: primary ones by discs (\[T\] §4), and how the points of a screen tile are ordered; through
-//! the tree; through the grid.
+//! The parameters of discs (\[T\] §4): where the points of a screen tile are, and how they are ordered.
 
-use crate::{CENTER, Diagnostic, Plan, Primary, RayLoop, Secondary, Window};
+use crate::{CENTER, Plan, Window};
 use kernels::layout::{
     CameraParams, CameraTraceParams, DISC_TILE, DepthRanks, DiscParams, PERSPECTIVE, TreeInfo,
 };
@@ -17,74 +16,11 @@ const NEAREST_SHARE: f64 = 1.0 / 64.0;
 /// With several grids down to this many cells of the finest: small things may be near.
 const NEAREST_CELLS: f64 = 64.0;
 
-/// Points a pixel up to which discs are faster than the grid, and than the tree: each picture bins all points anew.
-/// Measured in docs/benchmarks.md.
-const POINTS_PER_PIXEL: f64 = 4.0;
-const POINTS_PER_PIXEL_TO_TREE: f64 = 2.0;
-/// Pixels from which on they are: the dispatches of the binning cost what they cost.
-const FEWEST_PIXELS: usize = 32_768;
-
 impl Plan {
     /// Whether all camera rays of a sample start from the eye and go through their pixel's centre.
     #[must_use]
     pub fn looks_through_centers(&self, sample: u32) -> bool {
         (self.samples == 1 || sample == CENTER) && self.camera.projection == PERSPECTIVE
-    }
-
-    /// Whether the camera rays of a tile of the picture are to find their first hit by discs: where they go through
-    /// the centres of pixels, which binning relies on.
-    #[must_use]
-    pub fn by_discs(&self, tile: &Window) -> bool {
-        match self.primary {
-            _ if !self.looks_through_centers(0) => false,
-            Primary::Discs => true,
-            Primary::Grid | Primary::Tree => false,
-            Primary::Auto => self.discs_are_faster(tile) && !self.is_about_cells(),
-        }
-    }
-
-    fn discs_are_faster(&self, tile: &Window) -> bool {
-        let (pixels, points) = (tile.pixels(), self.cloud.points.len());
-        let most = if self.by_tree() { POINTS_PER_PIXEL_TO_TREE } else { POINTS_PER_PIXEL };
-        pixels >= FEWEST_PIXELS && points as f64 <= most * pixels as f64
-    }
-
-    /// Whether rays that do not come from the camera go through the tree, where the device can.
-    #[must_use]
-    pub fn by_tree(&self) -> bool {
-        self.secondary != Secondary::Grid && self.may_take_tree()
-    }
-
-    /// Whether camera rays that are not traced by discs do.
-    #[must_use]
-    pub fn camera_by_tree(&self) -> bool {
-        let wanted = match self.primary {
-            Primary::Grid => false,
-            Primary::Discs => self.secondary != Secondary::Grid, // a tile that has too many of them
-            Primary::Tree | Primary::Auto => true,
-        };
-        wanted && self.may_take_tree()
-    }
-
-    /// Whether any rays may go through the tree.
-    #[must_use]
-    pub fn takes_tree(&self) -> bool {
-        self.by_tree() || self.camera_by_tree()
-    }
-
-    fn may_take_tree(&self) -> bool {
-        self.ray_loop != RayLoop::Images && !self.is_about_cells()
-    }
-
-    /// Whether somebody wants to see the grid at work.
-    fn is_about_cells(&self) -> bool {
-        self.cells_per_pass != 0 || self.counts_work()
-    }
-
-    /// Whether a diagnostic counts what all rays of a pixel do.
-    pub(crate) fn counts_work(&self) -> bool {
-        let counts = [Diagnostic::Tests, Diagnostic::Cells];
-        self.diagnostics.iter().any(|shown| counts.contains(shown))
     }
 
     /// Parameters of `disc_count` for one tile of the picture. The grids say where the points are.

@@ -41,6 +41,7 @@ mod scales;
 mod scene_bits;
 mod shapes;
 mod steep;
+mod structure;
 mod transfer;
 mod volumes;
 
@@ -61,6 +62,7 @@ pub use nothing::{Shown, blank, nothing_seen};
 pub use picture::{Picture, Rays};
 pub use scales::ColorScale;
 pub use shapes::{ShapeKind, Shapes, scatter_kind};
+pub use structure::{RaysFrom, StructureKind};
 pub use volumes::Volumes;
 
 use bulk::Bulk;

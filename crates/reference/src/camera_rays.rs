@@ -1,10 +1,9 @@
-//! Twin of `camera_rays`: the camera's ray of a pixel, in the first cell that it meets.
+//! Twin of `camera_rays`: the camera's ray of a pixel.
 
-use crate::levels::Levels;
 use crate::real::{NO_HIT, Real, V3};
 use crate::sampler::{concentric_disc, sample_2d};
 use kernels::layout::{
-    CameraParams, FILTER_INTERVALS, NONE, ORTHOGRAPHIC, SAMPLE_FILM, SAMPLE_LENS,
+    CameraParams, FILTER_INTERVALS, NONE, ORTHOGRAPHIC, RAY_STARTS, SAMPLE_FILM, SAMPLE_LENS,
 };
 
 /// What a ray carries (`glsl/shared/state.glsl`).
@@ -24,7 +23,7 @@ pub struct Ray<R> {
     pub left: u32,
     /// The object whose surface is not there for it, or `NONE`.
     pub passed: u32,
-    /// The cell that it is in, or `NONE`.
+    /// The cell that it is in; `RAY_STARTS` before its structure has begun with it; `NONE` once it is done.
     pub cell: u32,
     /// Cells crossed so far.
     pub cells: u32,
@@ -43,12 +42,7 @@ fn filter_place<R: Real>(filter: &[f32], u: R) -> R {
 
 /// The ray of one pixel of the tile. `filter` is the plan's.
 #[must_use]
-pub fn camera_ray<R: Real>(
-    params: &CameraParams,
-    filter: &[f32],
-    levels: &Levels<R>,
-    pixel: [u32; 2],
-) -> Ray<R> {
+pub fn camera_ray<R: Real>(params: &CameraParams, filter: &[f32], pixel: [u32; 2]) -> Ray<R> {
     let zero = R::of(0.0);
     let at = [0, 1].map(|axis| params.tile_origin[axis] + pixel[axis]);
     let (mut offset, mut lens) = ([zero; 2], [zero; 2]);
@@ -73,13 +67,13 @@ pub fn camera_ray<R: Real>(
     let direction = ((forward + right.times(slope[0])) + up.times(slope[1])).normalize();
     let origin =
         if start == [zero; 2] { eye } else { (eye + right.times(start[0])) + up.times(start[1]) };
-    Ray::new(origin, direction, levels, NONE)
+    Ray::new(origin, direction, NONE)
 }
 
 impl<R: Real> Ray<R> {
-    /// A ray in the first cell that it meets, from the surface of a point or from nowhere.
+    /// A ray from the surface of a point or from nowhere, that its structure has yet to begin with.
     #[must_use]
-    pub fn new(origin: V3<R>, direction: V3<R>, levels: &Levels<R>, left: u32) -> Self {
+    pub fn new(origin: V3<R>, direction: V3<R>, left: u32) -> Self {
         Self {
             origin,
             direction,
@@ -88,7 +82,7 @@ impl<R: Real> Ray<R> {
             hit_slot: NONE,
             left,
             passed: NONE,
-            cell: levels.enter(origin, direction),
+            cell: RAY_STARTS,
             cells: 0,
             tests: 0,
         }

@@ -5,6 +5,7 @@ use crate::batch::{BATCH, test_batch};
 use crate::camera_rays::Ray;
 use crate::disc::depth_rank;
 use crate::disc_bin::DiscLists;
+use crate::levels::Levels;
 use crate::polynomial::Polynomial;
 use crate::real::Real;
 use kernels::layout::{DISC_TILE, LEAF_BITS, LEAF_POINTS, NONE};
@@ -23,12 +24,13 @@ fn points_of(entry: u32) -> impl Iterator<Item = u32> {
 pub fn disc_trace<R: Real>(
     ray: &mut Ray<R>,
     pixel: [u32; 2],
-    lists: &DiscLists,
+    (lists, levels): (&DiscLists, &Levels<R>),
     polynomials: &[Polynomial<R>],
 ) {
     let [x, y] = [0, 1].map(|axis| (pixel[axis] - lists.origin[axis]) / DISC_TILE);
     let [first, end] = lists.tiles[(y * lists.across + x) as usize].map(|at| at as usize);
-    let missed = std::mem::replace(&mut ray.cell, NONE) == NONE;
+    ray.cell = NONE;
+    let missed = levels.enter(ray.origin, ray.direction, R::of(0.0)) == NONE;
     let mut next = if missed { end } else { first };
     while next < end {
         let leaves =

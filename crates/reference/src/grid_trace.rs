@@ -10,7 +10,7 @@ use crate::grid_build::CellLists;
 use crate::levels::{Level, Levels};
 use crate::polynomial::Polynomial;
 use crate::real::{NO_HIT, Real};
-use kernels::layout::NONE;
+use kernels::layout::{NONE, RAY_STARTS};
 
 /// Follows one ray until it ends, at the nearest hit or, where `any_hit`, at the first that is found.
 pub fn grid_trace<R: Real>(
@@ -22,6 +22,9 @@ pub fn grid_trace<R: Real>(
 ) {
     let (o, d) = (ray.origin, ray.direction);
     let sheet = polynomials.get(ray.left as usize).map(|left| (left.normal_at(o), left.object));
+    if ray.cell == RAY_STARTS {
+        ray.cell = levels.enter(o, d, ray.after);
+    }
     let mut entry = ray.cell; // where it came into the grid that it is in
     while ray.cell != NONE {
         let (at_level, Level { grid, info }) = levels.of_cell(ray.cell);

@@ -65,10 +65,10 @@ impl<R: Real> Levels<R> {
             .unwrap_or(NONE)
     }
 
-    /// The first cell of a ray that starts anywhere, or `NONE` where it misses all grids.
+    /// The first cell of a ray of which hits up to `after` do not count; `NONE` where it misses all grids beyond.
     #[must_use]
-    pub fn enter(&self, o: V3<R>, d: V3<R>) -> u32 {
-        self.enter_from(0, o, d, [R::of(0.0), R::of(NO_HIT)])
+    pub fn enter(&self, o: V3<R>, d: V3<R>, after: R) -> u32 {
+        self.enter_from(0, o, d, [after, R::of(NO_HIT)])
     }
 }
 

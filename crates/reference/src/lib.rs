@@ -56,7 +56,7 @@ use grid_build::CellLists;
 use grid_trace::grid_trace;
 use kernels::layout::{FilmPixel, FitOutcome, FitParams, VOLUME_LIGHTS};
 use levels::Levels;
-use plan::{CENTER, Picture, Plan, Rays, Window};
+use plan::{CENTER, Picture, Plan, Rays, StructureKind, Window};
 use point_light::point_lights;
 use points::{Cloud, Grids, NeighborSearch, Rims, SlotRange, Watch, plan_grids};
 use polynomial::Polynomial;
@@ -201,7 +201,12 @@ impl<R: Real> Reference<R> {
         let mut polynomials: Vec<Polynomial<R>> =
             fitted.into_iter().map(|fit| fit.polynomial).collect();
         watch.stage("building the grid", cloud.points.len() as u64);
-        let grids = plan_grids(&cloud.points, &outcomes, plan.grid_resolution, plan.takes_tree());
+        let grids = plan_grids(
+            &cloud.points,
+            &outcomes,
+            plan.grid_resolution,
+            plan.takes(StructureKind::Tree),
+        );
         let point_cells = if plan.refines() {
             grid_build::list_points(&grids, &polynomials, &cloud.order)
         } else {
@@ -315,7 +320,7 @@ impl<R: Real> Reference<R> {
                     rays: Rays { camera: 1, ..Rays::default() },
                     ends_at_first: sample == CENTER && !plan.follows_centers(),
                 };
-                let ray = camera_rays::camera_ray(&camera, &plan.filter, &levels, pixel);
+                let ray = camera_rays::camera_ray(&camera, &plan.filter, pixel);
                 trace.run(ray, discs);
                 (trace.film, trace.rays)
             })
@@ -361,7 +366,7 @@ impl<R: Real> Reference<R> {
                 Refined::Accepted(hit, more) => return (Some((hit, object)), iterations + more),
                 Refined::Rejected(more) => {
                     iterations += more;
-                    refine::resume(ray, levels);
+                    refine::resume(ray);
                     grid_trace(ray, levels, &self.lists, &self.polynomials, false);
                 }
             }

@@ -46,7 +46,7 @@ pub fn point_lights<R: Real>(
                 }
                 for (at, (of_light, light)) in of.iter_mut().zip(&plan.lights).enumerate() {
                     let sample = sample_light(light, x, [R::of(0.5); 2]);
-                    let mut ray = Ray::new(x, sample.towards, &levels, NONE);
+                    let mut ray = Ray::new(x, sample.towards, NONE);
                     ray.passed = plan.passed_of(info.object);
                     ray.hit_t = sample.distance;
                     if plan.light_passes {

@@ -11,7 +11,7 @@ use crate::levels::{Level, Levels};
 use crate::polynomial::Polynomial;
 use crate::real::{NO_HIT, Real, V3};
 use crate::surface_hit::Hit;
-use kernels::layout::{FIT_NO_SURFACE, FitOutcome, NONE, ObjectInfo, Point};
+use kernels::layout::{FIT_NO_SURFACE, FitOutcome, NONE, ObjectInfo, Point, RAY_STARTS};
 
 const REACH: f64 = 3.0;
 const MAX_ROWS: u64 = 1024;
@@ -189,13 +189,9 @@ impl<R: Real> Surroundings<'_, R> {
 }
 
 /// Sends a ray whose hit was refined away on to the next.
-pub fn resume<R: Real>(ray: &mut Ray<R>, levels: &Levels<R>) {
+pub fn resume<R: Real>(ray: &mut Ray<R>) {
     ray.after = ray.hit_t;
     ray.hit_t = R::of(NO_HIT);
     ray.hit_slot = NONE;
-    let (o, d) = (ray.origin, ray.direction);
-    ray.cell = match levels.are_several() {
-        true => levels.enter_from(0, o, d, [ray.after, R::of(NO_HIT)]),
-        false => levels.of_cell(0).1.cell_around(o + d.times(ray.after)),
-    };
+    ray.cell = RAY_STARTS;
 }

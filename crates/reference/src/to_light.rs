@@ -21,7 +21,6 @@ use shadow_media::{ShadowPath, shadow_media};
 struct ToLight<'a, R> {
     reference: &'a Reference<R>,
     plan: &'a Plan,
-    levels: &'a Levels<R>,
     /// The light, by its number.
     light: usize,
     /// An object whose surface is not there, or `NONE`.
@@ -40,7 +39,7 @@ pub(crate) fn light_through<R: Real>(
     mut account: impl FnMut(&Ray<R>),
 ) -> V3<R> {
     let none = V3::splat(R::of(0.0));
-    let to_light = ToLight { reference, plan, levels, light, passed };
+    let to_light = ToLight { reference, plan, light, passed };
     let mut path = shadow_media(&ray, media);
     loop {
         grid_trace(&mut ray, levels, &reference.lists, &reference.polynomials, false);

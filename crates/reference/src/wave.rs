@@ -51,7 +51,12 @@ impl<R: Real> PixelTrace<'_, R> {
         while let Some((mut ray, path)) = rays.pop() {
             match discs.take() {
                 Some(lists) => {
-                    disc_trace(&mut ray, self.pixel, lists, &self.reference.polynomials);
+                    disc_trace(
+                        &mut ray,
+                        self.pixel,
+                        (lists, self.levels),
+                        &self.reference.polynomials,
+                    );
                 }
                 None => self.trace(&mut ray, false),
             }

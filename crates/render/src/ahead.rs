@@ -1,15 +1,14 @@
 //! Which kernels a picture will ask for, as far as the plan tells.
 
 use crate::RenderError;
-use crate::discs::Discs;
 use crate::marks::Marks;
 use crate::renderer::{Renderer, longest_list, needed, wave_rays};
-use crate::stages::camera_trace_by_discs;
 use crate::state::RayLoop;
+use crate::structure;
 use gpu::{Device, Kernel};
 use kernels::layout::SCENE_LIT;
-use kernels::spirv::{self, Marching, Module, Searching, Start, Way};
-use plan::{CENTER, Plan};
+use kernels::spirv::{self, Marching, Module, Searching, Start};
+use plan::{CENTER, Plan, RaysFrom, StructureKind};
 use points::device::{Needed, modules_of_shapes, modules_of_structures};
 use std::sync::Arc;
 
@@ -37,11 +36,16 @@ fn likely_modules(device: &Arc<Device>, plan: &Plan) -> [Vec<&'static Module>; 3
     let needed = needed(plan, device, ray_count);
     let form = RayLoop::of(plan.ray_loop, device, longest_list(plan, ray_count, 0));
     let rays = form.rays();
-    let by_discs = tiles.iter().any(|tile| plan.by_discs(tile));
-    let camera_trace = match by_discs {
-        true => camera_trace_by_discs(device),
-        false => plan.camera_by_tree().then(|| spirv::camera_trace(Way::Tree)),
+    let through = |from, start| {
+        let kind = plan.structures(from).into_iter().next().unwrap_or(StructureKind::Grid);
+        (kind, structure::modules(kind, device, (start, rays)))
     };
+    let (again, of_again) = through(RaysFrom::Camera, Start::Camera);
+    let of_tiles = tiles.iter().map(|tile| through(RaysFrom::Tile(tile), Start::Camera));
+    // One that is made for each tile, where any tile takes it.
+    let of_tile = of_tiles.into_iter().find(|(_, modules)| !modules.tile.is_empty());
+    let (kind, of_tile) = of_tile.unwrap_or_else(|| through(RaysFrom::Camera, Start::Camera));
+    let camera_trace = of_tile.at_once;
     let may_end = |sample| {
         form == RayLoop::Queue && plan.looks_through_centers(sample) && plan.meets_surfaces_alone()
     };
@@ -50,11 +54,9 @@ fn likely_modules(device: &Arc<Device>, plan: &Plan) -> [Vec<&'static Module>; 3
     let mut first: Vec<_> = camera_trace.into_iter().filter(|_| at_once || of_centers).collect();
     if !at_once {
         first.push(spirv::camera_rays(rays));
-        if by_discs {
-            first.push(spirv::disc_trace(rays));
-        }
-        if plan.camera_by_tree() && (!by_discs || plan.refines()) {
-            first.push(spirv::tree_trace(Start::Camera));
+        first.extend(of_tile.trace);
+        if kind != again && plan.refines() {
+            first.extend(of_again.trace);
         }
     }
     let any_points = !plan.cloud.points.is_empty();
@@ -63,8 +65,8 @@ fn likely_modules(device: &Arc<Device>, plan: &Plan) -> [Vec<&'static Module>; 3
     build.extend(modules_of_structures(needed));
 
     let mut then = Vec::new();
-    if by_discs && any_points {
-        then.extend(Discs::modules(rays));
+    if any_points {
+        then.extend(of_tile.tile);
     }
     let any_surface = any_points || plan.volumes.any_isosurface();
     let any_lit = any_surface && plan.scene_bits() & SCENE_LIT != 0;
@@ -81,8 +83,8 @@ fn likely_modules(device: &Arc<Device>, plan: &Plan) -> [Vec<&'static Module>; 3
     when(points_lit, &[spirv::point_rays(rays), spirv::point_lights(rays)]);
     let passes = (is_lit || points_lit) && plan.light_passes;
     when(passes, &[spirv::shadow_meet(rays), spirv::shadow_go_on(rays)]);
-    let leaves = (is_lit || scatters || points_lit) && plan.by_tree();
-    when(leaves, &[spirv::tree_trace(Start::Surface)]);
+    let (_, from_surfaces) = through(RaysFrom::Surface, Start::Surface);
+    when(is_lit || scatters || points_lit, from_surfaces.trace.as_slice());
     when(!plan.lights.is_empty() || plan.scatters(), &Marks::modules());
     let (marched, lit) = (plan.volumes.any_marched(), plan.volumes.any_lit());
     let marching = if lit { Marching::Lit } else { Marching::Wave };

@@ -13,7 +13,7 @@ use bytemuck::NoUninit;
 use gpu::{Bindings, Recorder};
 use kernels::layout::{FilmPixel, TILE_GROUP, WaveParams};
 use kernels::spirv::{Module, Rays};
-use plan::{CENTER, Picture, Plan, Window};
+use plan::{CENTER, Picture, Plan, StructureKind, Window};
 use points::Watch;
 use std::sync::Arc;
 use std::time::Instant;
@@ -42,6 +42,8 @@ pub(crate) struct Asked {
 pub(crate) struct Wave {
     pub params: WaveParams,
     pub traced: Traced,
+    /// What they go through.
+    pub through: StructureKind,
     /// Of which sample of the pixels.
     pub sample: u32,
 }
@@ -123,7 +125,9 @@ impl<'a> Frame<'a> {
         self.asked.scattered += u64::from(fates.next);
         let flags = self.plan.shows_of_volumes();
         let params = WaveParams { ray_count: fates.next, flags, ..wave.params };
-        Ok((fates.next > 0).then_some(Wave { params, traced: Traced::Scattered, ..*wave }))
+        let through = self.structure_of(Traced::Scattered);
+        let next = Wave { params, traced: Traced::Scattered, through, ..*wave };
+        Ok((fates.next > 0).then_some(next))
     }
 
     /// Passes until no ray lives: `record` records one, told of how many rays, and whether none was before. Returns

@@ -8,20 +8,20 @@
 
 mod ahead;
 mod budget;
-mod discs;
 mod frame;
 mod marks;
 mod renderer;
 mod stages;
 mod state;
 mod stats;
+mod structure;
 mod tables;
 
-pub use discs::DiscLists;
 pub use points::device::BuildError;
 pub use renderer::Renderer;
 pub use state::RayLoop;
 pub use stats::{FrameStats, Traversal};
+pub use structure::DiscLists;
 
 /// Why a frame could not be finished.
 #[derive(Debug, thiserror::Error)]

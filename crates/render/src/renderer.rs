@@ -2,18 +2,17 @@
 
 use crate::RenderError;
 use crate::budget::Budget;
-use crate::discs::{DiscLists, Discs};
 use crate::frame::Frame;
 use crate::state::{RayLoop, RayState};
 use crate::stats::FrameStats;
+use crate::structure::{DiscLists, Structures};
 use crate::tables::{self, FilmBuffers, VolumeBuffers, WaveBuffers};
 use gpu::{Bindings, Device, Recorder};
 use kernels::layout::{
-    MARCHES, NONE, ObjectInfo, Path, Polynomial, SCENE_BLENDS, SCENE_LEVELS, SCENE_SKIPS,
-    VolumeStop,
+    MARCHES, NONE, ObjectInfo, Path, Polynomial, SCENE_BLENDS, SCENE_LEVELS, VolumeStop,
 };
 use kernels::spirv::Rays;
-use plan::{MAX_DISC_PAIRS, Picture, Plan, camera_wave};
+use plan::{MAX_DISC_PAIRS, Picture, Plan, StructureKind, camera_wave};
 use points::Watch;
 use points::device::{Needed, Surfaces};
 use std::sync::Arc;
@@ -32,6 +31,7 @@ pub struct Renderer {
     pub(crate) bound: Bindings,
     pub(crate) buffers: Buffers,
     pub(crate) rays: WaveRays,
+    pub(crate) structures: Structures,
     pub(crate) run: Run,
 }
 
@@ -47,7 +47,6 @@ pub(crate) struct WaveRays {
     pub form: RayLoop,
     pub state: RayState,
     pub shadows: RayState,
-    pub discs: Discs,
     /// Whether no ray of `camera_trace` has needed more work than it may spend.
     pub end_at_once: bool,
 }
@@ -56,9 +55,6 @@ pub(crate) struct WaveRays {
 pub(crate) struct Run {
     pub recorder: Recorder,
     pub budget: Budget,
-    /// What kernels are specialized by, and `grid_trace` beside that.
-    pub scene: u32,
-    pub skips: u32,
     pub device: Arc<Device>,
 }
 
@@ -91,17 +87,17 @@ impl Renderer {
         let bound = bound.buffer(MARCHES, &wave.hits);
         let (volumes, bound) = VolumeBuffers::new(device, &plan.volumes, rays, bound)?;
         let shadows = if plan.lights.is_empty() { 1 } else { rays };
-        let points = plan.cloud.points.len() as u32;
+        let scene = scene_bits(plan, &surfaces);
         let rays = WaveRays {
             form,
             state: RayState::new(device, rays, form, plan.scatters())?,
             shadows: RayState::new(device, shadows, form, false)?,
-            discs: Discs::new(device, points, form.rays())?,
             end_at_once: true,
         };
         Ok(Self {
             plan: Arc::clone(plan),
-            run: Run::new(device, plan, &surfaces)?,
+            run: Run::new(device, scene)?,
+            structures: Structures::new(device, &surfaces, (form, scene))?,
             surfaces,
             bound,
             buffers: Buffers { film, wave, volumes },
@@ -130,7 +126,13 @@ impl Renderer {
     /// The points of the last tile's screen tiles, where a tile was traced by discs.
     #[must_use]
     pub fn disc_lists(&self) -> Option<&DiscLists> {
-        self.rays.discs.lists()
+        self.structures.disc_lists()
+    }
+
+    /// Whether rays can go through this structure.
+    #[must_use]
+    pub fn has(&self, kind: StructureKind) -> bool {
+        self.structures.get(kind).is_some()
     }
 
     /// Traces one picture of the plan.
@@ -148,16 +150,17 @@ impl Renderer {
 }
 
 impl Run {
-    fn new(device: &Arc<Device>, plan: &Plan, surfaces: &Surfaces) -> Result<Self, RenderError> {
-        let levels = if surfaces.grids.are_several() { SCENE_LEVELS } else { 0 };
-        let skips = surfaces.is_listed && surfaces.grids.skip_cells();
-        let scene = plan.scene_bits() | levels;
+    fn new(device: &Arc<Device>, scene: u32) -> Result<Self, RenderError> {
         let mut recorder = Recorder::new(device)?;
         recorder.specialize(scene);
         let (budget, device) = (Budget::of(device.info()), Arc::clone(device));
-        let skips = if skips { SCENE_SKIPS } else { 0 };
-        Ok(Self { recorder, budget, scene, skips, device })
+        Ok(Self { recorder, budget, device })
     }
+}
+
+/// What kernels are specialized by.
+fn scene_bits(plan: &Plan, surfaces: &Surfaces) -> u32 {
+    plan.scene_bits() | if surfaces.grids.are_several() { SCENE_LEVELS } else { 0 }
 }
 
 /// Rays of a wave of the plan, at most.
@@ -180,13 +183,12 @@ pub(crate) fn longest_list(plan: &Plan, rays: u32, cell_bytes: u64) -> u64 {
 pub(crate) fn needed(plan: &Plan, device: &Device, rays: u32) -> Needed {
     let longest = (u64::from(rays) * TEXELS_A_RAY).max(u64::from(MAX_DISC_PAIRS));
     let fits = longest <= u64::from(device.limits().max_texel_buffer_elements);
-    let (camera, others) = (plan.camera_by_tree(), plan.by_tree());
     // Spheres and discs have a colour of their own.
     let is_colored = |object: &ObjectInfo| object.first_color != NONE && object.slot_count > 0;
     let looks_around = plan.scene_bits() & SCENE_BLENDS != 0 || plan.objects.iter().any(is_colored);
     Needed {
-        lists: looks_around || !(camera && others),
-        tree: fits && plan.takes_tree(),
+        lists: looks_around || plan.takes(StructureKind::Grid),
+        tree: fits && plan.takes(StructureKind::Tree),
         point_cells: plan.refines(),
     }
 }

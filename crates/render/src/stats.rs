@@ -34,8 +34,6 @@ pub struct Traversal {
 /// Which rays a pass works on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Traced {
-    /// From the camera, by the screen tiles of a tile of the picture.
-    ByDiscs([u32; 2]),
     /// From the camera.
     Camera,
     /// From surfaces.
@@ -54,7 +52,7 @@ impl Traced {
 
     /// Whether they start at the camera.
     pub fn from_camera(self) -> bool {
-        matches!(self, Self::ByDiscs(_) | Self::Camera)
+        self == Self::Camera
     }
 }
 
@@ -69,7 +67,7 @@ impl FrameStats {
         }
         let kinds = &mut self.traversal;
         let sum = match traced {
-            Some(Traced::ByDiscs(_) | Traced::Camera) => &mut kinds.camera,
+            Some(Traced::Camera) => &mut kinds.camera,
             Some(Traced::Shadows) => &mut kinds.shadow,
             Some(Traced::Scattered) => &mut kinds.scattered,
             // Of rays from points, no count of rays has any.

@@ -8,8 +8,8 @@ use kernels::layout::{
     HITS, Hit, IMAGES, ISO_SEARCHES, IsoSearch, LEVELS, LIGHT_SUMS, LIGHTS, LISTED_POINTS,
     LIT_HITS, LIT_MARKS, LIT_RAYS, LIVE, LightSum, LitHit, MARCH_ENDS, MARCH_LIGHTS, MARCHES,
     March, MarchLight, NEXT_MARKS, NEXT_OFFSETS, OBJECTS, OUTCOMES, POLYNOMIALS, Path,
-    SCATTERING_MARKS, SCATTERING_RAYS, SHADOW_PATHS, SLOTS, TALLY, TEXELS_OF_IMAGES, TREE_NODES,
-    VISIBLE, VOLUME_CELLS, VOLUME_LENGTHS, VOLUME_LIGHTS, VOLUME_POINTS, VOLUME_STOPS, VOLUMES,
+    SCATTERING_MARKS, SCATTERING_RAYS, SHADOW_PATHS, SLOTS, TALLY, TEXELS_OF_IMAGES, VISIBLE,
+    VOLUME_CELLS, VOLUME_LENGTHS, VOLUME_LIGHTS, VOLUME_POINTS, VOLUME_STOPS, VOLUMES,
 };
 use plan::{Plan, Volumes, Window};
 use points::device::Surfaces;
@@ -36,9 +36,6 @@ pub(crate) fn of_scene(
         .buffer(TEXELS_OF_IMAGES, &texel_buffer(device, plan)?)
         .buffer(LIGHTS, &Buffer::from_slice(device, "lights", &plan.lights)?)
         .buffer(CAMERA_FILTER, &Buffer::from_slice(device, "filter", &plan.filter)?);
-    if let Some(tree) = &surfaces.tree {
-        table = table.buffer(TREE_NODES, &tree.nodes);
-    }
     if let Some(points) = &surfaces.point_cells {
         table = table.buffer(CELL_OFFSETS, &points.offsets).buffer(LISTED_POINTS, &points.points);
     }

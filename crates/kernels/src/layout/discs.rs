@@ -1,6 +1,6 @@
 //! The leaves that cover each screen tile.
 
-use super::rays::CameraParams;
+use super::rays::{CameraParams, TraceParams};
 use super::stage;
 
 stage! {
@@ -45,12 +45,10 @@ stage! {
         }
         /// Push constants of `disc_trace`.
         DiscTraceParams {
+            /// Of any structure.
+            wave: TraceParams,
             /// How pairs of a screen tile are ordered.
             ranks: DepthRanks,
-            /// Columns and rows of the tile of the picture.
-            tile_size: [u32; 2],
-            /// Loop iterations a ray may spend in this pass.
-            work: u32,
         }
     }
 }

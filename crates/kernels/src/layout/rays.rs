@@ -6,6 +6,8 @@ stage! {
     #![doc = "Rays on their way, and where they met surfaces."]
     "rays" needs []
     constants {
+        /// A ray's cell before its structure has begun with it (structure.glsl).
+        RAY_STARTS = 0xffff_fffe;
         /// Texels a row of the ray state's images.
         STATE_ROW = 1024;
         /// Beside an object in [`TraceParams::passed`]: its surface is not there near the ray's start alone.
@@ -103,7 +105,7 @@ stage! {
             /// Of all that is random.
             seed: u32,
         }
-        /// Push constants of `grid_trace`.
+        /// Push constants of the kernel of any structure that rays go through (structure.glsl).
         TraceParams {
             /// Rays of the wave, or of those that are listed.
             ray_count: u32,
@@ -124,7 +126,7 @@ stage! {
             position: [u32; 4],
             /// Unit direction, and how many cells were crossed.
             direction: [u32; 4],
-            /// Cell or `NONE`, cursor in it, points tested, slot of the hit or `NONE`.
+            /// Cell, `RAY_STARTS` or `NONE`, cursor in it, points tested, slot of the hit or `NONE`.
             cell: [u32; 4],
             /// The point whose surface it starts on or `NONE`, up to where hits do not count, the cell where it came
             /// into the grid that it is in, of several; one unused.

@@ -1,11 +1,12 @@
 //! The tree of boxes that rays go through.
 
+use super::rays::TraceParams;
 use super::search::SearchNode;
 use super::stage;
 
 stage! {
     #![doc = "The tree of boxes that rays go through."]
-    "tree" needs ["search"]
+    "tree" needs ["search", "rays"]
     constants {
     }
     bindings from 46 {
@@ -39,18 +40,8 @@ stage! {
         }
         /// Push constants of `tree_trace`.
         TreeTraceParams {
-            /// As in [`TraceParams`].
-            ray_count: u32,
-            /// As in [`TraceParams`].
-            work: u32,
-            /// As in [`TraceParams`].
-            any_hit: u32,
-            /// As in [`TraceParams`].
-            listed: u32,
-            /// As in [`TraceParams`].
-            passed: u32,
-            /// 1: rays are at the root.
-            starts: u32,
+            /// Of any structure.
+            wave: TraceParams,
             /// The tree's.
             tree: TreeInfo,
         }

@@ -23,7 +23,7 @@ impl<R: Real> ToLight<'_, R> {
         let left = path.left;
         let is_finite = left < R::of(NO_HIT);
         path.left = if is_finite { (left - ray.hit_t).max(R::of(0.0)) } else { left };
-        let mut next = Ray::new(hit.position, ray.direction, self.levels, met.slot);
+        let mut next = Ray::new(hit.position, ray.direction, met.slot);
         (next.hit_t, next.passed) = (path.left, ray.passed);
         Some(next)
     }

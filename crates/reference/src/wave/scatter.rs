@@ -56,7 +56,7 @@ impl<R: Real> PixelTrace<'_, R> {
             } else {
                 self.rays.refracted += 1;
             }
-            let next_ray = Ray::new(hit.position, sent.direction, self.levels, ray.hit_slot);
+            let next_ray = Ray::new(hit.position, sent.direction, ray.hit_slot);
             rays.push((next_ray, next));
         }
     }

@@ -24,7 +24,7 @@ impl<R: Real> PixelTrace<'_, R> {
         let arriving = sample.arriving * lobe(place, sample.towards);
         let arrives = arriving.0.iter().any(|&channel| channel > zero);
         arrives.then(|| {
-            let mut ray = Ray::new(hit.position, sample.towards, self.levels, slot);
+            let mut ray = Ray::new(hit.position, sample.towards, slot);
             ray.hit_t = sample.distance;
             (ray, arriving)
         })

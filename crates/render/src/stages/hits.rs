@@ -2,7 +2,6 @@
 
 use crate::RenderError;
 use crate::frame::{Frame, Wave};
-use crate::stats::Traced;
 use kernels::layout::{Hit, MARKS, NONE, TraceParams};
 use kernels::spirv;
 use points::device::line;
@@ -13,7 +12,7 @@ impl Frame<'_> {
     pub fn settle_hits(&mut self, wave: &Wave) -> Result<(), RenderError> {
         let ray_count = wave.params.ray_count;
         // Rays that go on after a refinement are in no list of a screen tile.
-        let traced = if wave.traced.from_camera() { Traced::Camera } else { wave.traced };
+        let (traced, through) = (wave.traced, self.structure_of(wave.traced));
         let params =
             TraceParams { ray_count, cells: 0, work: 0, any_hit: 0, listed: 0, passed: NONE };
         let refines = self.plan.refines();
@@ -39,7 +38,7 @@ impl Frame<'_> {
             marks.record_none(&mut self.renderer.run.recorder, ray_count);
             let own = state.buffer(MARKS, &marks.bits);
             self.dispatch(spirv::resume(rays), &own, &params, invocations);
-            self.trace_to_the_end([ray_count, rejected], traced)?;
+            self.trace_to_the_end([ray_count, rejected], traced, through)?;
         }
     }
 

@@ -51,9 +51,10 @@ impl Frame<'_> {
         let counts = u32::from(passed == NONE);
         let params = ShadowParams { ray_count, passed, counts, lamp_count, lamp_media };
         let (rays, invocations) = (self.rays(), line(ray_count));
-        let [mut alive, mut going] = [ray_count; 2];
-        while going > 0 {
-            self.trace_to_the_end([ray_count, alive], traced)?;
+        let through = self.structure_of(traced);
+        let mut alive = ray_count;
+        while alive > 0 {
+            self.trace_to_the_end([ray_count, alive], traced, through)?;
             if light_passes {
                 let own = self.renderer.rays.shadows.in_place();
                 self.dispatch(spirv::shadow_meet(rays), &own, &params, invocations);
@@ -69,7 +70,7 @@ impl Frame<'_> {
             let own = self.renderer.rays.shadows.in_place().buffer(MARKS, &marks.bits);
             self.dispatch(spirv::shadow_go_on(rays), &own, &params, invocations);
             self.submit(None)?;
-            [alive, going] = self.renderer.buffers.wave.read_live()?;
+            [alive, _] = self.renderer.buffers.wave.read_live()?;
         }
         Ok(())
     }

@@ -9,5 +9,4 @@ mod light;
 mod trace;
 mod volumes;
 
-pub(crate) use camera::camera_trace_by_discs;
 pub(crate) use fate::Fates;

@@ -3,15 +3,20 @@
 //! Depends on the camera, so it runs for every tile of every picture. Buffers stay from one to the
 //! next and grow where they must.
 
+use super::{Modules, Structure, TracePass};
+use crate::RenderError;
 use gpu::{Bindings, Buffer, Device, GpuError, Recorder, Timings};
 use kernels::layout::{
-    DISC_KEYS, DISC_LEAVES, DISC_OFFSETS, DISC_TILES, DepthRanks, DiscParams, LEAF_POINTS,
-    POLYNOMIALS,
+    CameraTraceParams, DISC_KEYS, DISC_LEAVES, DISC_OFFSETS, DISC_TILES, DepthRanks, DiscParams,
+    DiscTraceParams, LEAF_POINTS, POLYNOMIALS,
 };
-use kernels::spirv::{self, Module, Rays};
+use kernels::spirv::{self, Module, Rays, Way};
 use plan::{MAX_DISC_PAIRS, Plan, Window, screen_tiles};
 use points::device::{Pairs, Scan, Sort, SortSpace, Surfaces, line};
 use std::sync::Arc;
+
+/// Lanes that ask together (`glsl/shared/packet.glsl`).
+const PACKET: u32 = 8;
 
 /// The leaves of each screen tile, front to back.
 #[derive(Debug)]
@@ -73,25 +78,26 @@ impl Discs {
         })
     }
 
-    /// What it takes to bin discs.
-    pub fn modules(rays: Rays) -> Vec<&'static Module> {
+    pub fn modules(device: &Device, rays: Rays) -> Modules {
         let own = [spirv::disc_count(rays), spirv::disc_emit(rays), spirv::disc_ranges()];
-        [&own[..], &Scan::modules(), &Sort::modules()].concat()
+        Modules {
+            trace: Some(spirv::disc_trace(rays)),
+            at_once: module_at_once(device),
+            tile: [&own[..], &Scan::modules(), &Sort::modules()].concat(),
+        }
     }
 
-    /// What [`Discs::bin`] made last.
+    /// What was made of the last tile that was binned.
     pub fn lists(&self) -> Option<&DiscLists> {
         self.lists.as_ref()
     }
 
     /// Lists the points of each screen tile of a tile of the picture; `None` where the pairs are
     /// too many. `timed` is told what each submission cost; the last is the caller's.
-    pub fn bin(
+    fn bin(
         &mut self,
         rec: &mut Recorder,
-        plan: &Plan,
-        tile: &Window,
-        surfaces: &Surfaces,
+        (plan, tile, surfaces): (&Plan, &Window, &Surfaces),
         timed: &mut dyn FnMut(&Timings),
     ) -> Result<Option<&DiscLists>, GpuError> {
         let counted = plan.discs_of(tile, &surfaces.grids);
@@ -166,5 +172,40 @@ impl Discs {
         }
         self.lists = Some(lists);
         Ok(())
+    }
+}
+
+/// What traces the first wave in one pass by the lists of screen tiles, where the device's subgroups are made of packets
+/// of eight that can vote.
+fn module_at_once(device: &Device) -> Option<&'static Module> {
+    let subgroup = device.limits().subgroup_size;
+    let has_packets = subgroup != 0 && subgroup.is_multiple_of(PACKET);
+    has_packets.then(|| spirv::camera_trace(Way::Discs))
+}
+
+impl Structure for Discs {
+    fn take_tile(
+        &mut self,
+        recorder: &mut Recorder,
+        of: (&Plan, &Window, &Surfaces),
+        timed: &mut dyn FnMut(&Timings),
+    ) -> Result<bool, RenderError> {
+        Ok(self.bin(recorder, of, timed)?.is_some())
+    }
+
+    /// They cross no cells, so that K does not count.
+    fn trace(&self, recorder: &mut Recorder, pass: &TracePass<'_>) {
+        let Some(lists) = &self.lists else { return };
+        let params = DiscTraceParams { wave: *pass.params, ranks: lists.ranks };
+        let recorded = recorder.pass(spirv::disc_trace(self.rays));
+        pass.record(recorded, &lists.bindings(), &params);
+    }
+
+    fn at_once(
+        &self,
+        device: &Device,
+        _params: &mut CameraTraceParams,
+    ) -> Option<(&'static Module, Bindings)> {
+        Some((module_at_once(device)?, self.lists.as_ref()?.bindings()))
     }
 }
