@@ -139,8 +139,8 @@ void main() {
         bool seeking = alive && next == range.y;
         while (seeking && cells_left > 0u && work_left > 0u) {
             uint around = scene_has(SCENE_SKIPS) ? empty_around(range) : 0u;
-            vec3 exits = crossings(here.grid, at, around, o, d);
-            bool ends = ray.hit_t <= nearest_crossing(exits);
+            vec3 exits = exits_of(here.grid, at, around, o, d);
+            bool ends = ray.hit_t <= nearest_exit(exits);
             at = next_cell(here.grid, at, around, scene_has(SCENE_SKIPS), exits, o, d);
             alive = !ends && in_grid(here.grid, at);
             cell = alive ? here.first_cell + cell_id(here.grid, at) : NONE;

@@ -2,7 +2,7 @@
 //
 // twin  crates/reference/src/grid.rs
 // Steps after Amanatides and Woo, A Fast Voxel Traversal Algorithm for Ray Tracing (1987), but
-// every crossing is computed from the cell itself, never by adding up: a ray can stop anywhere
+// every exit is computed from the cell itself, never by adding up: a ray can stop anywhere
 // and go on in another pass with the same bits.
 #ifndef GRID_GLSL
 #define GRID_GLSL
@@ -47,26 +47,26 @@ bool ball_meets_cell(GridInfo grid, uvec3 cell, vec3 center, float radius) {
 
 // Distance along the ray to the face that it leaves through of the box of cells at most `around` from the
 // cell, along one axis.
-float crossing(float origin, float edge, int cell, int around, float o, float d) {
+float exit_of(float origin, float edge, int cell, int around, float o, float d) {
     bool crosses = abs(d) > PARALLEL;
     float face = origin + float(d > 0.0 ? cell + around + 1 : cell - around) * edge;
     return crosses ? (face - o) / (crosses ? d : 1.0) : NO_HIT;
 }
 
-vec3 crossings(GridInfo grid, uvec3 cell, uint around, vec3 o, vec3 d) {
-    return vec3(crossing(grid.origin.x, grid.edge, int(cell.x), int(around), o.x, d.x),
-                crossing(grid.origin.y, grid.edge, int(cell.y), int(around), o.y, d.y),
-                crossing(grid.origin.z, grid.edge, int(cell.z), int(around), o.z, d.z));
+vec3 exits_of(GridInfo grid, uvec3 cell, uint around, vec3 o, vec3 d) {
+    return vec3(exit_of(grid.origin.x, grid.edge, int(cell.x), int(around), o.x, d.x),
+                exit_of(grid.origin.y, grid.edge, int(cell.y), int(around), o.y, d.y),
+                exit_of(grid.origin.z, grid.edge, int(cell.z), int(around), o.z, d.z));
 }
 
-float nearest_crossing(vec3 t) {
+float nearest_exit(vec3 t) {
     return min(t.x, min(t.y, t.z));
 }
 
 // Where a ray's way through the cell begins and ends.
 vec2 way_through(GridInfo grid, uvec3 cell, vec3 o, vec3 d) {
-    vec3 enters = -crossings(grid, cell, 0u, o, -d);
-    return vec2(max(enters.x, max(enters.y, enters.z)), nearest_crossing(crossings(grid, cell, 0u, o, d)));
+    vec3 enters = -exits_of(grid, cell, 0u, o, -d);
+    return vec2(max(enters.x, max(enters.y, enters.z)), nearest_exit(exits_of(grid, cell, 0u, o, d)));
 }
 
 // One axis of the slabs of the grid's box: narrows [range.x, range.y].
@@ -97,13 +97,13 @@ uint empty_around(uvec2 range) {
     return range.x == range.y ? max(range.x, 1u) - 1u : 0u;
 }
 
-// The next cell behind the face at the nearest of the crossings t of the box of cells `around` the cell (ties:
+// The next cell behind the face at the nearest of the exits t of the box of cells `around` the cell (ties:
 // the lower axis); outside of the grid, one past some axis. Along the other axes it is where the ray is
 // then, in the box, and never behind where it was. Unless `skips`, the box is the cell alone.
 uvec3 next_cell(GridInfo grid, uvec3 cell, uint around, bool skips, vec3 t, vec3 o, vec3 d) {
     ivec3 from = ivec3(cell);
     ivec3 reached = from;
-    if (skips) reached = ivec3(cell_of(grid, o + nearest_crossing(t) * d));
+    if (skips) reached = ivec3(cell_of(grid, o + nearest_exit(t) * d));
     ivec3 ahead = ivec3(greaterThan(d, vec3(0.0)));
     ivec3 low = from - (1 - ahead) * int(around);
     ivec3 high = from + ahead * int(around);

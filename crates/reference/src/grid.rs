@@ -110,7 +110,7 @@ impl<R: Real> Grid<R> {
     /// Distances along the ray to the faces that it leaves through of the box of cells at most `around` from the
     /// cell, axis by axis.
     #[must_use]
-    pub fn crossings(&self, cell: [u32; 3], around: u32, o: V3<R>, d: V3<R>) -> V3<R> {
+    pub fn exits_of(&self, cell: [u32; 3], around: u32, o: V3<R>, d: V3<R>) -> V3<R> {
         V3([0, 1, 2].map(|axis| {
             let d = d.0[axis];
             let (cell, around) = (cell[axis] as i32, around as i32);
@@ -132,12 +132,12 @@ impl<R: Real> Grid<R> {
     /// Where a ray's way through the cell begins and ends.
     #[must_use]
     pub fn way_through(&self, cell: [u32; 3], o: V3<R>, d: V3<R>) -> [R; 2] {
-        let enters = -self.crossings(cell, 0, o, -d);
+        let enters = -self.exits_of(cell, 0, o, -d);
         let enter = enters.x().max(enters.y().max(enters.z()));
-        [enter, nearest_crossing(self.crossings(cell, 0, o, d))]
+        [enter, nearest_exit(self.exits_of(cell, 0, o, d))]
     }
 
-    /// The next cell behind the face at the nearest of the crossings t of the box of cells `around` the cell
+    /// The next cell behind the face at the nearest of the exits t of the box of cells `around` the cell
     /// (ties: the lower axis), or none outside. Along the other axes it is where the ray is then, in the box, and
     /// never behind where it was.
     #[must_use]
@@ -156,7 +156,7 @@ impl<R: Real> Grid<R> {
         } else {
             2
         };
-        let reached = self.cell_of(o + d.times(nearest_crossing(t)));
+        let reached = self.cell_of(o + d.times(nearest_exit(t)));
         let next = [0, 1, 2].map(|axis| {
             let (from, around) = (cell[axis] as i32, around as i32);
             let ahead = d.0[axis] > R::of(0.0);
@@ -201,8 +201,8 @@ fn clip_to_box<R: Real>(range: [R; 2], low: V3<R>, high: V3<R>, o: V3<R>, d: V3<
     [near, far]
 }
 
-/// The least of three crossings.
-pub fn nearest_crossing<R: Real>(t: V3<R>) -> R {
+/// The least of three exits.
+pub fn nearest_exit<R: Real>(t: V3<R>) -> R {
     t.x().min(t.y().min(t.z()))
 }
 
@@ -219,7 +219,7 @@ mod tests {
         let mut next = grid.enter(o, d, [0.0, NO_HIT]).map(|id| grid.cell_of_id(id));
         while let Some(cell) = next {
             visited.push(cell);
-            next = grid.step(cell, 0, grid.crossings(cell, 0, o, d), o, d);
+            next = grid.step(cell, 0, grid.exits_of(cell, 0, o, d), o, d);
         }
         visited
     }

@@ -5,7 +5,7 @@
 
 use crate::batch::{BATCH, test_batch};
 use crate::camera_rays::Ray;
-use crate::grid::{empty_around, nearest_crossing};
+use crate::grid::{empty_around, nearest_exit};
 use crate::grid_build::CellLists;
 use crate::levels::{Level, Levels};
 use crate::polynomial::Polynomial;
@@ -48,8 +48,8 @@ pub fn grid_trace<R: Real>(
             }
         }
         let around = empty_around(range);
-        let exits = grid.crossings(at, around, o, d);
-        let ends = ray.hit_t <= nearest_crossing(exits);
+        let exits = grid.exits_of(at, around, o, d);
+        let ends = ray.hit_t <= nearest_exit(exits);
         let next = if ends { None } else { grid.step(at, around, exits, o, d) };
         ray.cell = next.map_or(NONE, |next| info.first_cell + grid.cell_id(next));
         if ray.cell == NONE {
