@@ -13,7 +13,6 @@
 #include "stages/points.glsl"
 #include "stages/scene.glsl"
 #include "stages/rays.glsl"
-#include "levels.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
