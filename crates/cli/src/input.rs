@@ -1,21 +1,30 @@
 //! From a path on the command line to a checked scene and its points.
 
-use crate::args::{Overrides, ViewArgs};
+mod reading;
+mod units;
+mod values;
+
+pub use reading::{note_points, read_file};
+pub use units::looks_like_degrees;
+pub use values::{SceneValues, check_preset};
+
+use crate::args::ViewArgs;
 use crate::camera::CameraOptions;
 use crate::errors::Failure;
 use crate::point_file::{ColorBy, PointFile};
 use crate::progress::Progress;
 use crate::{memory, source};
-use plan::{MapProjection, Plan, SceneImages, SensorView, Window};
-use points::{Column, Columns, Dropped, PointSet, ReadOptions, Upwards, Wanted, Watch};
+use plan::{Plan, SceneImages, SensorView, Window};
+use points::{PointSet, Upwards, Watch};
+use reading::same_file;
 use scene::{Albedo, ImageFile, Object, Scene, Units, Up};
-use serde_json::json;
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use units::note_projection;
 
 /// A scene, from a scene file or around a point file.
 #[derive(Debug, Clone)]
@@ -35,118 +44,6 @@ pub struct Input {
 /// What is meant where a crop is of the file's coordinates.
 pub const BOX_HINT: &str = "To render only the points in a box of the file's coordinates, use filter.box: \
     --set 'objects.0.filter.box={ min = [X, Y, Z], max = [X, Y, Z] }'";
-
-/// Options of the command line that stand for values of the scene, later ones over earlier ones.
-#[derive(Debug, Default)]
-pub struct SceneValues {
-    /// `PATH=VALUE`, and the option as typed where it was not `--set`.
-    entries: Vec<(String, Option<String>)>,
-    /// Where the files of a scene are looked for first.
-    root: Option<PathBuf>,
-}
-
-impl SceneValues {
-    /// `--set` alone.
-    pub fn set(set: &[String]) -> Self {
-        Self { entries: set.iter().map(|entry| (entry.clone(), None)).collect(), root: None }
-    }
-
-    /// With `--root`.
-    pub fn below(mut self, root: Option<&Path>) -> Self {
-        self.root = root.map(Path::to_path_buf).or(self.root);
-        self
-    }
-
-    /// With `--preset`, which is one more value of the scene.
-    pub fn add_preset(&mut self, preset: Option<&str>) {
-        if let Some(name) = preset {
-            self.add("render.preset", &json!(name).to_string(), &format!("--preset {name}"));
-        }
-    }
-
-    /// `--set`, `--size` and `--cells-per-pass`.
-    pub fn new(overrides: &Overrides) -> Self {
-        let mut values = Self::default();
-        values.append(overrides);
-        values
-    }
-
-    /// The same over what there is already.
-    pub fn append(&mut self, overrides: &Overrides) {
-        self.entries.extend(Self::set(&overrides.set).entries);
-        self.add_preset(overrides.preset.as_deref());
-        if let Some(root) = &overrides.root {
-            self.root = Some(root.clone());
-        }
-        if let Some(size) = overrides.size {
-            self.add(
-                "image.size",
-                &format!("[{}, {}]", size.0, size.1),
-                &format!("--size {}x{}", size.0, size.1),
-            );
-        }
-        if let Some(cells) = overrides.cells_per_pass {
-            self.add(
-                "render.cells_per_pass",
-                &cells.to_string(),
-                &format!("--cells-per-pass {cells}"),
-            );
-        }
-    }
-
-    /// `--columns`, which is for point files.
-    pub fn add_columns(&mut self, path: &Path, columns: &Columns) -> Result<(), Failure> {
-        if is_scene_file(path) {
-            return Err(columns_of_scene(path));
-        }
-        let column = |of: &Column| match of {
-            Column::Name(name) => json!(name).to_string(),
-            Column::Number(number) => number.to_string(),
-        };
-        let named =
-            columns.named.iter().map(|(name, of)| format!("{} = {}", json!(name), column(of)));
-        let left_out = format!("_ = {:?}", columns.left_out);
-        let all: Vec<String> = named.chain([left_out]).collect();
-        self.add("objects.0.columns", &format!("{{ {} }}", all.join(", ")), "--columns");
-        Ok(())
-    }
-
-    /// One option.
-    pub fn add(&mut self, path: &str, value: &str, option: &str) {
-        self.entries.push((format!("{path}={value}"), Some(option.to_owned())));
-    }
-
-    /// As the scene takes them.
-    pub fn as_set(&self) -> Vec<String> {
-        self.entries.iter().map(|entry| entry.0.clone()).collect()
-    }
-
-    /// The scene knows of `--set` alone; the user is told of what was typed.
-    fn name_options(&self, mut failure: Failure) -> Failure {
-        for (value, option) in &self.entries {
-            let Some(option) = option else { continue };
-            for line in &mut failure.lines {
-                *line = line.replace(&format!("--set {value}"), option);
-            }
-        }
-        failure
-    }
-}
-
-/// Fails where `--preset` and `--set` give different presets: neither is to be passed over without a word.
-pub fn check_preset(preset: Option<&str>, set: &[String]) -> Result<(), Failure> {
-    let Some(preset) = preset else { return Ok(()) };
-    for text in set {
-        let Some((path, value)) = text.split_once('=') else { continue };
-        let value = value.trim().trim_matches(['"', '\'']);
-        if path.trim() == "render.preset" && value != preset {
-            return Err(Failure::usage(format!(
-                "--preset {preset} and --set {text} give different presets; leave one out"
-            )));
-        }
-    }
-    Ok(())
-}
 
 /// Why `--columns` and this file do not go together.
 pub fn columns_of_scene(path: &Path) -> Failure {
@@ -373,76 +270,6 @@ impl Input {
         })
     }
 
-    /// Reads of every object's points what a render needs, and reports those that are of no use or left out. How a
-    /// point file is shown is decided by its points.
-    pub fn read_points(&mut self, progress: &Progress) -> Result<Vec<Arc<PointSet>>, Failure> {
-        let Some(point_file) = &self.point_file else {
-            return self.read_as(plan::read_options, progress);
-        };
-        let mut sets = self.read_as(|object| point_file.options(object), progress)?;
-        let up = self.up_of(&sets);
-        let read_all = || {
-            let object = &self.scene.objects[0];
-            let options = ReadOptions { wanted: Wanted::All, ..plan::read_options(object) };
-            progress.stage(
-                "reading attributes",
-                fs::metadata(&object.points).map_or(0, |file| file.len()),
-            );
-            let set =
-                points::read_with(&object.points, &options, &mut |done, _| progress.done(done));
-            progress.clear();
-            Ok(set?)
-        };
-        let Some(first) = sets.first_mut() else { return Ok(sets) };
-        let mut values = point_file.choose(&self.scene, first, up, read_all, progress)?;
-        if !values.is_empty() {
-            values.extend(point_file.values.iter().cloned());
-            self.scene = Scene::for_point_file(&self.path, self.up, &values)?;
-            self.options.apply(&mut self.scene, &self.path, false)?;
-            leave_out_folder(&mut self.scene, &self.path);
-        }
-        Ok(sets)
-    }
-
-    /// The same with everything that the files have.
-    pub fn read_all(&self, progress: &Progress) -> Result<Vec<Arc<PointSet>>, Failure> {
-        let all = |object: &Object| ReadOptions {
-            wanted: Wanted::All,
-            filter: plan::point_filter(&object.filter),
-            columns: plan::point_columns(&object.columns),
-            ..ReadOptions::default()
-        };
-        self.read_as(all, progress)
-    }
-
-    /// Reads each file once for all objects with the same filter and columns.
-    fn read_as(
-        &self,
-        options: impl Fn(&Object) -> ReadOptions,
-        progress: &Progress,
-    ) -> Result<Vec<Arc<PointSet>>, Failure> {
-        let mut jobs: Vec<(PathBuf, &Path, ReadOptions)> = Vec::new();
-        let mut job_of = Vec::new();
-        for object in &self.scene.objects {
-            let (file, options) = (same_file(&object.points), options(object));
-            let known = jobs.iter().position(|job| {
-                let known = (&job.2.filter, &job.2.columns);
-                job.0 == file && known == (&options.filter, &options.columns)
-            });
-            if let Some(job) = known {
-                jobs[job].2.wanted = jobs[job].2.wanted.or(&options.wanted);
-            } else {
-                jobs.push((file, &object.points, options));
-            }
-            job_of.push(known.unwrap_or(jobs.len() - 1));
-        }
-        let sets = jobs
-            .iter()
-            .map(|(_, path, options)| Ok(Arc::new(read_file(path, options, progress)?)))
-            .collect::<Result<Vec<_>, Failure>>()?;
-        Ok(job_of.into_iter().map(|job| Arc::clone(&sets[job])).collect())
-    }
-
     /// Reads the images and plans the render. This checks whatever of the scene depends on its points and
     /// images.
     pub fn plan(
@@ -494,54 +321,6 @@ impl Input {
     }
 }
 
-impl Input {
-    /// Says which points are taken for degrees, and which only look like it.
-    fn note_units(&self, sets: &[Arc<PointSet>], progress: &Progress) {
-        for (index, (object, set)) in self.scene.objects.iter().zip(sets).enumerate() {
-            let known = sets[..index].iter().any(|earlier| Arc::ptr_eq(earlier, set));
-            if known || object.units != Units::Auto {
-                continue;
-            }
-            let file = object.points.display();
-            if let points::Units::Degrees(reason) = &set.units {
-                progress.note(&format!(
-                    "{file}: x and y are taken as longitude and latitude in degrees, since {reason}, and \
-                     projected to metres; --set objects.{index}.units=scene leaves them as they are"
-                ));
-            }
-            if let Some(note) = looks_like_degrees(&set.units, index) {
-                progress.warn(&format!("{file}: {note}"));
-            }
-        }
-    }
-}
-
-/// The doubt about numbers that look like degrees, of an object of this index.
-pub fn looks_like_degrees(units: &points::Units, index: usize) -> Option<String> {
-    (*units == points::Units::LikeDegrees).then(|| {
-        format!(
-            "x and y look like longitude and latitude in degrees beside heights in metres, but nothing in the \
-             file says so, and they are left as they are; --set objects.{index}.units=degrees projects them to \
-             metres"
-        )
-    })
-}
-
-fn note_projection(projection: &MapProjection, progress: &Progress) {
-    let [longitude, latitude] = projection.center;
-    progress.note(&format!(
-        "degrees become metres east (x) and north (y) of longitude {longitude}, latitude {latitude} \
-         ({projection}); camera, lights and transforms are in these"
-    ));
-    if projection.stretch > 0.01 {
-        progress.warn(&format!(
-            "the points in degrees reach so far that lengths are up to {:.0} % too long away from the \
-             centre; choose a smaller part by objects.filter for true proportions",
-            100.0 * projection.stretch
-        ));
-    }
-}
-
 /// A header must not tell in which folder of which machine a picture was made.
 fn leave_out_folder(scene: &mut Scene, path: &Path) {
     if let [object] = scene.objects.as_mut_slice() {
@@ -550,56 +329,9 @@ fn leave_out_folder(scene: &mut Scene, path: &Path) {
     }
 }
 
-/// One name for all names of a file.
-fn same_file(path: &Path) -> PathBuf {
-    fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf())
-}
-
 fn texture_of(object: &Object) -> Option<&ImageFile> {
     match &object.material.albedo {
         Albedo::Texture { file, .. } => Some(file),
         _ => None,
-    }
-}
-
-/// Reads one point file, and tells of points that are of no use or left out.
-pub fn read_file(
-    path: &Path,
-    options: &ReadOptions,
-    progress: &Progress,
-) -> Result<PointSet, Failure> {
-    progress.stage("reading points", fs::metadata(path).map_or(0, |file| file.len()));
-    let set = points::read_with(path, options, &mut |done, _| progress.done(done))?;
-    progress.clear();
-    let dropped = Dropped { non_finite: set.non_finite, invalid: set.invalid };
-    note_points(path, &set.notes, dropped, set.len() as u64 + set.filtered_out, progress);
-    if !options.filter.keeps_all() {
-        let (kept, all) = (set.len(), set.len() as u64 + set.filtered_out);
-        let file = path.display();
-        progress.note(&format!("{file}: kept {kept} of {all} points ({})", options.filter));
-    }
-    Ok(set)
-}
-
-/// Says what a reader assumed, and how many points are of no use besides so many that are.
-pub fn note_points(
-    path: &Path,
-    notes: &[String],
-    dropped: Dropped,
-    usable: u64,
-    progress: &Progress,
-) {
-    let file = path.display();
-    for note in notes {
-        progress.note(&format!("{file}: {note}"));
-    }
-    for (count, why) in [
-        (dropped.non_finite, "whose position is infinite or not a number"),
-        (dropped.invalid, "which the file marks as invalid"),
-    ] {
-        if count > 0 {
-            let all = usable + dropped.count();
-            progress.warn(&format!("{file}: dropped {count} of {all} points, {why}"));
-        }
     }
 }

@@ -343,6 +343,56 @@ mod tests {
         }
     }
 
+    /// A struct with each kind of member: vectors, a lone number, a struct inside, an array, one that begins within a texel.
+    const EVERY_KIND: StructLayout = StructLayout {
+        name: "Every",
+        size: 80,
+        members: &[
+            member("place", 0, Type::Numbers(Number::Float, 3)),
+            member("count", 12, Type::Numbers(Number::Int, 1)),
+            member("inner", 16, Type::Struct(&INNER)),
+            member("pair", 24, Type::Numbers(Number::Uint, 2)),
+            member("list", 32, Type::Numbers(Number::Uint, 8)),
+            member("value", 64, Type::Numbers(Number::Float, 1)),
+            member("glow", 68, Type::Numbers(Number::Float, 3)),
+        ],
+        doc: &[],
+    };
+    const INNER: StructLayout = StructLayout {
+        name: "Inner",
+        size: 8,
+        members: &[
+            member("first", 0, Type::Numbers(Number::Float, 1)),
+            member("second", 4, Type::Numbers(Number::Uint, 1)),
+        ],
+        doc: &[],
+    };
+
+    const fn member(name: &'static str, offset: usize, kind: Type) -> Member {
+        Member { name, offset, kind, doc: &[] }
+    }
+
+    /// Word by word: byte 4 n of a struct is component n % 4 of its texel n / 4.
+    #[test]
+    fn texels_are_taken_apart_where_members_lie() {
+        assert_eq!(
+            constructed(&EVERY_KIND, 0),
+            "Every(uintBitsToFloat(t0.xyz), int(t0.w), Inner(uintBitsToFloat(t1.x), t1.y), t1.zw, \
+             uint[](t2.x, t2.y, t2.z, t2.w, t3.x, t3.y, t3.z, t3.w), uintBitsToFloat(t4.x), \
+             float[](uintBitsToFloat(t4.y), uintBitsToFloat(t4.z), uintBitsToFloat(t4.w)))"
+        );
+        let one = |at: usize| {
+            member_from_texels("every", "int(5u * at)", &EVERY_KIND, &EVERY_KIND.members[at])
+        };
+        assert!(one(0).contains("vec3 every_place_at(uint at) {"), "{}", one(0));
+        assert!(one(0).contains("uintBitsToFloat(texelFetch(every_texels, int(5u * at)).xyz)"));
+        assert!(one(1).contains("return int(texelFetch(every_texels, int(5u * at)).w);"));
+        assert!(one(3).contains("texelFetch(every_texels, int(5u * at) + 1).zw;"));
+        let of_list = "int(5u * at) + int((8u + i) / 4u))[(8u + i) & 3u]";
+        assert!(one(4).contains(of_list), "{}", one(4));
+        assert!(one(6).contains("int((17u + i) / 4u))[(17u + i) & 3u]"), "{}", one(6));
+    }
+
     /// What std430 makes of the members' types is where Rust has put them, and elements of lists leave no gap.
     #[test]
     fn std430_agrees_with_rust() {
