@@ -3,7 +3,7 @@
 // reads   points
 // writes  bounds           d2 of the k-th nearest among the points around it in memory
 // runs    one invocation per point of the batch
-// twin    points::NeighborSearch (exact neighbours are one result)
+// twin    none: exact neighbours are one result (points::NeighborSearch)
 //
 // With FEW, for k up to 16; else up to 64.
 #version 460

@@ -11,7 +11,7 @@
 //         live             how many rays would need more work than they may spend: then nothing else counts, and
 //                          the tile is traced pass by pass
 // runs    one invocation per pixel of the tile
-// twin    crates/reference/src/camera_rays.rs, disc_trace.rs, surface_hit.rs, wave/classify.rs
+// twin    none of its own: it is camera_rays, disc_trace or tree_trace, surface_hit and classify in one
 //
 // A workgroup is one screen tile. A ray travels in registers from the eye to its pixel: no state is stored.
 #version 460

@@ -4,7 +4,7 @@
 //         keys             cells, ascending; numbers from the count of cells on belong to none
 // writes  offsets          one a cell, and one behind the last
 // runs    one invocation per entry of offsets
-// twin    crates/reference/src/grid_build.rs
+// twin    none: what it is a step of has one result, which crates/reference/src/grid_build.rs makes at once
 //
 // Unlike ranges, offsets tell where a row of cells begins and ends, also through empty ones.
 #version 460

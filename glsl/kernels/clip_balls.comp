@@ -3,7 +3,7 @@
 // reads   clips            one a ball: its new centre and radius; each slot at most once
 // writes  polynomials      the same surface, seen from the new centre
 // runs    one invocation per clip
-// twin    crates/reference/src/rim.rs
+// twin    crates/reference/src/rim.rs, clip_balls
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

@@ -3,7 +3,7 @@
 // reads   polynomials
 // writes  offsets          one count a leaf; a scan turns them into offsets
 // runs    one invocation per leaf
-// twin    crates/reference/src/disc_bin.rs
+// twin    none: pairs of tile and leaf are one list, which crates/reference/src/disc_bin.rs makes at once
 //
 // A leaf is eight consecutive slots: neighbours in memory, and mostly on the screen.
 #version 460

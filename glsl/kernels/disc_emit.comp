@@ -5,7 +5,7 @@
 // writes  keys             the screen tile, and below it the rank of the leaf's nearest distance
 //         leaves           the leaf, and which of its points cover the screen tile
 // runs    one invocation per leaf; its discs cover the 16 384 screen tiles of a tile at most
-// twin    crates/reference/src/disc_bin.rs
+// twin    none: pairs of tile and leaf are one list, which crates/reference/src/disc_bin.rs makes at once
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

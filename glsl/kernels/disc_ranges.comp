@@ -3,7 +3,7 @@
 // reads   keys             ascending
 // writes  tiles            first and past-the-last pair; empty tiles keep the zeros they hold
 // runs    one invocation per pair
-// twin    crates/reference/src/disc_bin.rs
+// twin    none: pairs of tile and leaf are one list, which crates/reference/src/disc_bin.rs makes at once
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

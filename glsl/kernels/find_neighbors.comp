@@ -6,7 +6,7 @@
 // writes  lists            slots, nearest first, ties by place in the file
 //         ties             of UNTIED: 1 for a leaf of which any point met two others at the same distance
 // runs    one invocation per point of the batch, or of listed leaves
-// twin    points::NeighborSearch (exact neighbours are one result)
+// twin    none: exact neighbours are one result (points::NeighborSearch)
 //
 // Sixteen points are measured before any is put into its place among the nearest: one bit each. With FEW,
 // for k up to 16; else up to 64. With UNTIED, distances alone are compared: where two are equal, the list

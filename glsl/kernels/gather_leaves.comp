@@ -6,7 +6,7 @@
 //         counts           how many; NONE where they were too many, or the search too long
 //         groups           leaves of the batch, where some are listed
 // runs    one invocation per leaf of the batch, or per listed one; lists and counts lie in that order
-// twin    points::NeighborSearch (exact neighbours are one result)
+// twin    none: exact neighbours are one result (points::NeighborSearch)
 //
 // Points that are neighbours in memory look for theirs together: a box costs eight tests and one fetch.
 #version 460

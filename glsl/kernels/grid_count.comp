@@ -6,7 +6,7 @@
 //         large_offsets    the same of large balls alone, where params.any_large; theirs are cells around the
 //                          ball, before the exact test
 // runs    one invocation per point
-// twin    crates/reference/src/grid_build.rs
+// twin    none: what it is a step of has one result, which crates/reference/src/grid_build.rs makes at once
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

@@ -5,7 +5,7 @@
 // writes  keys             the cell's place in the slab
 //         slots            the point
 // runs    one invocation per point
-// twin    crates/reference/src/grid_build.rs
+// twin    none: what it is a step of has one result, which crates/reference/src/grid_build.rs makes at once
 //
 // Pairs come out in the order of the points; the sort that follows is stable.
 #version 460

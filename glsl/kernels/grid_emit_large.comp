@@ -7,7 +7,7 @@
 //                          meet it: the sort takes such pairs to the end
 //         slots            the point
 // runs    one invocation per cell around a large ball, so that a huge one is no long loop
-// twin    crates/reference/src/grid_build.rs
+// twin    none: what it is a step of has one result, which crates/reference/src/grid_build.rs makes at once
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

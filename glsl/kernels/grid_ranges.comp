@@ -4,7 +4,7 @@
 //         keys             cells of one slab, ascending
 // writes  cells            first and past-the-last pair; empty cells keep the zeros they hold
 // runs    one invocation per pair
-// twin    crates/reference/src/grid_build.rs
+// twin    none: what it is a step of has one result, which crates/reference/src/grid_build.rs makes at once
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

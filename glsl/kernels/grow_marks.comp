@@ -3,7 +3,7 @@
 // reads   grid, marks_in
 // writes  marks_out
 // runs    one invocation per word of 32 cells
-// twin    crates/reference/src/grid_build.rs
+// twin    none: what it is a step of has one result, which crates/reference/src/grid_build.rs makes at once
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

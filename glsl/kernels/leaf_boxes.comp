@@ -3,7 +3,7 @@
 // reads   points
 // writes  nodes            the first level; behind the object's last point, empty boxes
 // runs    one invocation per box
-// twin    points::NeighborSearch (exact neighbours are one result)
+// twin    none: exact neighbours are one result (points::NeighborSearch)
 //
 // Of points that coincide, only the first k + 1 can be neighbours of any point. A leaf that lies behind so
 // many, with all its points in the same place, is empty too: so a million of them cost no more than others.

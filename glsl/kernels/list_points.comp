@@ -4,7 +4,7 @@
 //         polynomials
 // writes  points           in the order of slots
 // runs    one invocation per entry of slots
-// twin    crates/reference/src/grid_build.rs
+// twin    crates/reference/src/grid_build.rs, list_points
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

@@ -3,7 +3,7 @@
 // reads   nodes            the level below
 // writes  nodes            one level
 // runs    one invocation per box
-// twin    points::NeighborSearch (exact neighbours are one result)
+// twin    none: exact neighbours are one result (points::NeighborSearch)
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

@@ -4,7 +4,7 @@
 //         light_sums       what the volumes on their ways left of it
 // writes  visible          of this light
 // runs    one invocation per point of a batch
-// twin    crates/reference/src/point_light.rs
+// twin    crates/reference/src/point_lights.rs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS

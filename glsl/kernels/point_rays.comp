@@ -9,7 +9,7 @@
 //
 // Points in cells from which nothing is seen send none: no sample that is seen has one of them in reach,
 // since cells that show anything are marked with two cells around them.
-// twin    crates/reference/src/point_light.rs
+// twin    crates/reference/src/point_lights.rs, point_rays
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_WRITES

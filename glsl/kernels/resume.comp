@@ -5,7 +5,7 @@
 // writes  the ray state    rejected rays alone, in place: their structure begins with them again, after the hit they lost
 //         marks            one bit for each of these; must be zero before
 // runs    one invocation per ray of the wave
-// twin    crates/reference/src/refine.rs
+// twin    crates/reference/src/refine.rs, resume
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS

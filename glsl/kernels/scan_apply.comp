@@ -3,7 +3,7 @@
 // reads   sums             what comes before each run, where params.has_base says so
 // writes  values           the exclusive prefix sum, or SCAN_LIMIT where it would be more
 // runs    one invocation per run
-// twin    crates/reference/src/grid_build.rs (a prefix sum has but one result)
+// twin    none: a prefix sum has but one result
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

@@ -3,7 +3,7 @@
 // reads   values
 // writes  sums             one a run of RUN_LENGTH values
 // runs    one invocation per run
-// twin    crates/reference/src/grid_build.rs (a prefix sum has but one result)
+// twin    none: a prefix sum has but one result
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

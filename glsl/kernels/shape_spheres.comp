@@ -5,7 +5,7 @@
 // writes  polynomials      one a point
 //         outcomes         how large it is; no surface where it has no radius
 // runs    one invocation per point of the batch
-// twin    crates/reference/src/shape.rs
+// twin    crates/reference/src/shape.rs, shape_spheres
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

@@ -5,7 +5,7 @@
 // writes  cells            of an empty cell, an empty range that begins at the distance, in cells along any axis, and
 //                          is MOST_SKIPPED at most
 // runs    one invocation per word of 32 cells
-// twin    crates/reference/src/grid_build.rs
+// twin    crates/reference/src/grid_build.rs, skip_cells
 //
 // A ray in an empty cell leaves all cells that are nearer at once (grid.glsl).
 #version 460

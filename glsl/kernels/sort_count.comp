@@ -3,7 +3,7 @@
 // reads   keys_in
 // writes  histogram        [digit][run]; must be zero before
 // runs    one invocation per run of RUN_LENGTH keys, which alone touches its column
-// twin    crates/reference/src/grid_build.rs (a stable sort has but one result)
+// twin    none: a stable sort has but one result
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

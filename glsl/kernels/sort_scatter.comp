@@ -4,7 +4,7 @@
 //         histogram        scanned: where the next key of [digit][run] goes; counted up
 // writes  keys_out, slots_out
 // runs    one invocation per run of RUN_LENGTH keys, which alone touches its column
-// twin    crates/reference/src/grid_build.rs (a stable sort has but one result)
+// twin    none: a stable sort has but one result
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

@@ -5,8 +5,7 @@
 // writes  nodes            of this level
 //         boxes            around them; no box where all children are empty
 // runs    one invocation per node
-// twin    none: hits are those of any structure (crates/reference/src/grid_trace.rs); boxes are tested for what they
-//         hold (tests/cases/tree.rs)
+// twin    none: hits are those of any structure; boxes are tested for what they hold (tests/cases/tree.rs)
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define TEXELS

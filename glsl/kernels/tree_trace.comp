@@ -7,7 +7,7 @@
 //         live             how many rays have not ended yet
 //         marks            one bit for each of these, by its place in the list; must be zero before
 // runs    one invocation per ray of the wave; dispatched until no ray lives
-// twin    crates/reference/src/grid_trace.rs (hits are those of any structure)
+// twin    none: hits are those of any structure (crates/reference/src/grid_trace.rs)
 //
 // LEAVING as in structure.glsl.
 #version 460
