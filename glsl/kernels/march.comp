@@ -10,7 +10,7 @@
 //         paths            what the volumes emit towards the camera, and their optical depth
 //         live             how many rays are not done
 // runs    one invocation per ray of the wave; dispatched until none lives
-// twin    crates/reference/src/volume.rs
+// twin    crates/reference/src/march.rs
 //
 // With SHADOWS, rays towards a light: what is left of its light goes to light_sums. With LIT, colours of
 // some volumes are not emitted, but scatter the light that reaches their points:

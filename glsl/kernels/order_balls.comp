@@ -4,7 +4,7 @@
 //         order            slots in the order of (object, index)
 // writes  balls            of a part: centre and radius
 // runs    one invocation per point of the part
-// twin    none: a copy
+// twin    none: it copies what polynomials have
 //
 // Files may hold points in any order: each read may be a line of its own from memory. Here nothing else waits for it.
 #version 460

@@ -6,7 +6,7 @@
 // writes  reaches          in the first round: the distance to the last neighbour
 //         sizes            in the second: the mean of a point's own reach and its neighbours'
 // runs    one invocation per point of the batch
-// twin    crates/points/src/neighbors.rs, smooth_sizes
+// twin    crates/reference/src/lib.rs, smooth_sizes
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"

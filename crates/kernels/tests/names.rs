@@ -31,9 +31,11 @@ fn every_kernel_has_its_twin() {
         }
         let (file, function) = twin.split_once(", ").unwrap_or((&twin, ""));
         let path = root().join(file);
-        let text = fs::read_to_string(&path).unwrap_or_else(|_| panic!("{kernel}: no twin '{file}'"));
+        let text =
+            fs::read_to_string(&path).unwrap_or_else(|_| panic!("{kernel}: no twin '{file}'"));
         let of_its_name = path.file_stem().is_some_and(|stem| stem == kernel);
-        let has = text.contains(&format!("fn {kernel}(")) || text.contains(&format!("fn {kernel}<"));
+        let has =
+            text.contains(&format!("fn {kernel}(")) || text.contains(&format!("fn {kernel}<"));
         assert!(of_its_name || (function == kernel && has), "{kernel}: '{twin}' has another name");
     }
 }
@@ -41,7 +43,8 @@ fn every_kernel_has_its_twin() {
 /// A kernel's pass asks for it by its name, which is its label and its row in the timings.
 #[test]
 fn every_kernel_is_dispatched_by_name() {
-    let folders = ["crates/render/src", "crates/points/src/device"].map(|folder| root().join(folder));
+    let folders =
+        ["crates/render/src", "crates/points/src/device"].map(|folder| root().join(folder));
     let mut pending = folders.to_vec();
     let mut sources = String::new();
     while let Some(folder) = pending.pop() {

@@ -42,6 +42,7 @@ mod scene_bits;
 mod shapes;
 mod steep;
 mod structure;
+mod tiles;
 mod transfer;
 mod volumes;
 
@@ -63,6 +64,7 @@ pub use picture::{Picture, Rays};
 pub use scales::ColorScale;
 pub use shapes::{ShapeKind, Shapes, scatter_kind};
 pub use structure::{RaysFrom, StructureKind};
+pub use tiles::{Window, camera_wave, checked_crop};
 pub use volumes::Volumes;
 
 use bulk::Bulk;
@@ -82,34 +84,8 @@ use scene::{Fresnel, Scene, Up};
 pub use scene::{Primary, RayLoop, Secondary};
 use std::sync::Arc;
 
-/// Columns of a tile at most: a row of the ray state's images.
-const TILE_WIDTH: u32 = layout::STATE_ROW;
 /// In place of a sample's number: the ray through a pixel's centre, where there are several samples beside it.
 pub const CENTER: u32 = NONE;
-/// Rays of a wave at most: their state is 128 MiB.
-const WAVE_RAYS: u32 = 1 << 20;
-/// Volumes of a scene, for so many rays.
-const VOLUMES_A_RAY: u32 = 8;
-/// Sides of the blocks of pixels whose rays lie together.
-const BLOCK: u32 = 8;
-
-/// A rectangle of pixels of the full image.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Window {
-    /// Column and row of the first pixel.
-    pub origin: [u32; 2],
-    /// Columns and rows.
-    pub size: [u32; 2],
-}
-
-impl Window {
-    /// Pixels.
-    #[must_use]
-    pub fn pixels(&self) -> usize {
-        self.size[0] as usize * self.size[1] as usize
-    }
-}
-
 /// Everything that a render needs, on any device.
 #[derive(Debug, Clone)]
 pub struct Plan {
@@ -474,52 +450,6 @@ impl Plan {
         self.extras.iter().any(|extra| matches!(extra, Extra::Volume | Extra::Value))
     }
 
-    /// The tiles of the picture, row by row.
-    #[must_use]
-    pub fn tiles(&self) -> Vec<Window> {
-        let width = TILE_WIDTH.min(self.window.size[0].next_multiple_of(BLOCK));
-        // What a ray keeps of each volume is in one buffer.
-        let volumes = (self.volumes.infos.len() as u32).div_ceil(VOLUMES_A_RAY).max(1);
-        let rows = (WAVE_RAYS / self.rays_per_pixel() / width / volumes).max(BLOCK);
-        let sides = [width, rows / BLOCK * BLOCK];
-        let starts = |axis: usize| {
-            let (first, count) = (self.window.origin[axis], self.window.size[axis]);
-            (first..first + count)
-                .step_by(sides[axis] as usize)
-                .map(move |at| (at, sides[axis].min(first + count - at)))
-        };
-        starts(1)
-            .flat_map(|(y, height)| {
-                starts(0).map(move |(x, width)| Window { origin: [x, y], size: [width, height] })
-            })
-            .collect()
-    }
-
-    /// Parameters of `camera_rays` for one sample of one tile.
-    #[must_use]
-    pub fn camera_of(&self, tile: &Window, sample: u32) -> CameraParams {
-        let sample_index = self.sample_index(sample);
-        CameraParams { tile_origin: tile.origin, tile_size: tile.size, sample_index, ..self.camera }
-    }
-
-    /// Parameters of the kernels that scatter and shade, for the first wave of one sample of one
-    /// tile.
-    #[must_use]
-    pub fn wave_of(&self, tile: &Window, sample: u32) -> WaveParams {
-        WaveParams {
-            tile_origin: tile.origin,
-            tile_size: tile.size,
-            ray_count: camera_wave(tile),
-            sample_index: self.sample_index(sample),
-            ..self.wave
-        }
-    }
-
-    /// As kernels take it: the one sample of a pixel is none of a sequence, nor is [`CENTER`].
-    fn sample_index(&self, sample: u32) -> u32 {
-        if self.samples > 1 { sample } else { NONE }
-    }
-
     /// An empty picture, to be filled tile by tile.
     #[must_use]
     pub fn picture(&self) -> Picture {
@@ -545,23 +475,4 @@ fn voxel_edges(scene: &Scene, sets: &[Arc<PointSet>], denoised: &[Denoising]) ->
         _ => None,
     });
     automatic.chain(of_depths).collect()
-}
-
-/// Rays of the wave from the camera, with those that are none because the tile ends within a block.
-#[must_use]
-pub fn camera_wave(tile: &Window) -> u32 {
-    tile.size[0].next_multiple_of(BLOCK) * tile.size[1].next_multiple_of(BLOCK)
-}
-
-/// What of an image of these columns and rows is rendered: `crop`, or all of it.
-///
-/// # Errors
-/// [`PlanError::Crop`] where the crop is empty or leaves the image.
-pub fn checked_crop(crop: Option<Window>, image: [u32; 2]) -> Result<Window, PlanError> {
-    let crop = crop.unwrap_or(Window { origin: [0, 0], size: image });
-    let inside = (0..2).all(|axis| {
-        crop.size[axis] > 0
-            && crop.origin[axis].checked_add(crop.size[axis]).is_some_and(|end| end <= image[axis])
-    });
-    if inside { Ok(crop) } else { Err(PlanError::Crop { crop, image }) }
 }

@@ -28,11 +28,12 @@ pub mod isosurface;
 pub mod least_squares;
 pub mod levels;
 pub mod light;
+pub mod march;
 mod material;
 pub mod media;
 pub mod optics;
 mod path;
-pub mod point_light;
+pub mod point_lights;
 pub mod polynomial;
 pub mod projection;
 pub mod real;
@@ -57,7 +58,7 @@ use grid_trace::grid_trace;
 use kernels::layout::{FilmPixel, FitOutcome, FitParams, VOLUME_LIGHTS};
 use levels::Levels;
 use plan::{CENTER, Picture, Plan, Rays, StructureKind, Window};
-use point_light::point_lights;
+use point_lights::point_lights;
 use points::{Cloud, Grids, NeighborSearch, Rims, SlotRange, Watch, plan_grids};
 use polynomial::Polynomial;
 use rayon::prelude::*;
@@ -122,7 +123,7 @@ fn fit_points<R: Real>(
         let search = NeighborSearch::new(&cloud.points[range.clone()], slots.first_slot);
         let k = params.neighbors as usize;
         let smoothed = match params.feature_size < 0.0 {
-            true => Some(Smoothed::new(&search, range.len(), k, watch)?),
+            true => Some(Smoothed::smooth_sizes(&search, range.len(), k, watch)?),
             false => None,
         };
         watch.stage("fitting surfaces", cloud.points.len() as u64);
@@ -165,8 +166,8 @@ struct Smoothed {
 }
 
 impl Smoothed {
-    /// `None` where the watcher asked for an end.
-    fn new(search: &NeighborSearch<'_>, count: usize, k: usize, watch: &dyn Watch) -> Option<Self> {
+    /// Twin of `smooth_sizes`; `None` where the watcher asked for an end.
+    fn smooth_sizes(search: &NeighborSearch<'_>, count: usize, k: usize, watch: &dyn Watch) -> Option<Self> {
         watch.stage("measuring feature sizes", count as u64);
         let mut lists = Vec::with_capacity(count * k);
         for first in (0..count).step_by(FIT_BATCH) {
@@ -212,9 +213,7 @@ impl<R: Real> Reference<R> {
         } else {
             PointCells::default()
         };
-        for clip in rims.clips(&cloud.points, &outcomes) {
-            rim::clip_ball(&mut polynomials[clip.slot as usize], &clip);
-        }
+        rim::clip_balls(&mut polynomials, &rims.clips(&cloud.points, &outcomes));
         let lists = grid_build::build_grids(&grids, &polynomials, &cloud.order, watch);
         polynomials.extend(plan.volumes.stand_ins().iter().map(Polynomial::from));
         let visible = Vec::new();

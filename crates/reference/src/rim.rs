@@ -44,8 +44,14 @@ pub fn reach_of_rim<R: Real, I: Iterator<Item = V3<R>>>(
     s.max(R::of(LEAST))
 }
 
-/// The same surface, in another ball.
-pub fn clip_ball<R: Real>(p: &mut Polynomial<R>, clip: &BallClip) {
+/// The same surfaces, some of them in another ball. Polynomials are by slot.
+pub fn clip_balls<R: Real>(polynomials: &mut [Polynomial<R>], clips: &[BallClip]) {
+    for clip in clips {
+        clip_one(&mut polynomials[clip.slot as usize], clip);
+    }
+}
+
+fn clip_one<R: Real>(p: &mut Polynomial<R>, clip: &BallClip) {
     let center = p.center + V3::of_f32(clip.shift);
     let moved = center - p.center;
     let curved = p.apply_curvature(moved);
@@ -90,7 +96,7 @@ mod tests {
         };
         let (o, d) = (V3([0.8, 2.1, 9.0]), V3([0.0, 0.0, -1.0]));
         let before = p.intersect(o, d, 0.0);
-        clip_ball(&mut p, &BallClip { slot: 0, trust: 0.75, shift: [-0.25, 0.0, 0.0] });
+        clip_one(&mut p, &BallClip { slot: 0, trust: 0.75, shift: [-0.25, 0.0, 0.0] });
         assert!((p.intersect(o, d, 0.0) - before).abs() < 1e-12);
         assert!(p.intersect(V3([1.55, 2.0, 9.0]), d, 0.0) > 1e30, "beyond the clipped ball");
     }

@@ -11,7 +11,7 @@ const SPHERE_MARGIN: f64 = 1.00001; // trust radius over radius
 const NO_NORMAL: f64 = 0.5;
 
 /// The sphere about a point: (|y|² − r²) / 2r.
-pub fn sphere_polynomial<R: Real>(point: &Point, radius: f32, object: u32) -> Polynomial<R> {
+pub fn shape_spheres<R: Real>(point: &Point, radius: f32, object: u32) -> Polynomial<R> {
     let is_drawn = radius >= Shapes::SMALLEST;
     let (zero, r) = (R::of(0.0), if is_drawn { R::of_f32(radius) } else { R::of(1.0) });
     Polynomial {
@@ -27,7 +27,7 @@ pub fn sphere_polynomial<R: Real>(point: &Point, radius: f32, object: u32) -> Po
 }
 
 /// The disc about a point, across the normal or, where there is none, across z.
-pub fn disc_polynomial<R: Real>(
+pub fn shape_discs<R: Real>(
     point: &Point,
     radius: f32,
     normal: V3<R>,
@@ -62,8 +62,8 @@ pub fn shapes_of<R: Real>(
             (None, _) => V3::splat(R::of(0.0)),
         };
         let (polynomial, kind) = match shapes.kind {
-            ShapeKind::Sphere => (sphere_polynomial(point, radius, shapes.object), FIT_SPHERE),
-            ShapeKind::Disc => (disc_polynomial(point, radius, normal, shapes.object), FIT_DISC),
+            ShapeKind::Sphere => (shape_spheres(point, radius, shapes.object), FIT_SPHERE),
+            ShapeKind::Disc => (shape_discs(point, radius, normal, shapes.object), FIT_DISC),
         };
         let kind = if polynomial.trust > R::of(0.0) { kind } else { FIT_NO_SURFACE };
         Fitted { polynomial, kind, feature_size: R::of_f32(radius), rim: Rim::default() }
@@ -100,7 +100,7 @@ mod tests {
     const POINT: Point = Point { position: [1.0, 2.0, 3.0], index: 5 };
 
     fn sphere(radius: f32) -> Polynomial<f32> {
-        sphere_polynomial(&POINT, radius, 0)
+        shape_spheres(&POINT, radius, 0)
     }
 
     #[test]
@@ -109,7 +109,7 @@ mod tests {
         for radius in [1e-12, 1e-6, 0.25, 1e6] {
             let point = Point { position: [0.0; 3], index: 0 };
             let o = V3([-4.0 * radius, 0.0, 0.0]);
-            let t = sphere_polynomial(&point, radius, 0).intersect(o, along, 0.0);
+            let t = shape_spheres(&point, radius, 0).intersect(o, along, 0.0);
             // Some steps of f32 at 3.
             assert!((t / radius - 3.0).abs() <= 1e-6, "{radius}: {t}");
         }
@@ -146,7 +146,7 @@ mod tests {
             assert_eq!(sphere.trust, 0.0);
             assert!(sphere.diagonal.0.iter().all(|x: &f32| x.is_finite()));
         }
-        let disc = disc_polynomial::<f32>(&POINT, 0.5, V3([0.0; 3]), 0);
+        let disc = shape_discs::<f32>(&POINT, 0.5, V3([0.0; 3]), 0);
         assert_eq!((disc.trust, disc.gradient), (0.5, V3([0.0, 0.0, 1.0])));
     }
 }

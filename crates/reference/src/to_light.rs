@@ -10,9 +10,9 @@ use crate::camera_rays::Ray;
 use crate::grid_trace::grid_trace;
 use crate::isosurface::blocks;
 use crate::levels::Levels;
+use crate::march::march;
 use crate::media::Media;
 use crate::real::{Real, V3};
-use crate::volume::march;
 use plan::Plan;
 use shadow_media::{ShadowPath, shadow_media};
 

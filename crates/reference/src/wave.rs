@@ -18,11 +18,12 @@ use crate::film::{count_work, write_first};
 use crate::grid_trace::grid_trace;
 use crate::isosurface::isosurface;
 use crate::levels::Levels;
+use crate::march::{March, half_lost, is_whole, march};
 use crate::media::Media;
 use crate::path::Path;
 use crate::real::{NO_HIT, Real, V3};
 use crate::surface_hit::Hit;
-use crate::volume::{Lighting, March, half_lost, is_whole, march};
+use crate::volume::Lighting;
 use kernels::layout::{FilmPixel, WaveParams};
 use plan::{Plan, Rays};
 

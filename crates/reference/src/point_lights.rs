@@ -6,17 +6,24 @@ use crate::grid_trace::grid_trace;
 use crate::isosurface::blocks;
 use crate::levels::Levels;
 use crate::light::sample_light;
+use crate::march::march;
 use crate::media::Media;
 use crate::real::{Real, V3};
 use crate::to_light::light_through;
-use crate::volume::{march, may_be_seen};
-use kernels::layout::{NONE, VOLUME_EMITS, VOLUME_LIGHTS};
+use crate::volume::may_be_seen;
+use kernels::layout::{Light, NONE, VOLUME_EMITS, VOLUME_LIGHTS};
 use plan::Plan;
 use points::Watch;
 use rayon::prelude::*;
 
 /// Points that are lit between two looks at the watcher.
 const BATCH: usize = 1 << 10;
+
+/// The ray from a point of a volume to the middle of a light.
+fn point_rays<R: Real>(light: &Light, x: V3<R>) -> Ray<R> {
+    let sample = sample_light(light, x, [R::of(0.5); 2]);
+    Ray { hit_t: sample.distance, ..Ray::new(x, sample.towards, NONE) }
+}
 
 /// Of each light, of the points of all volumes; none where no volume is lit. `None` where the watcher asked for an end.
 pub fn point_lights<R: Real>(
@@ -45,10 +52,8 @@ pub fn point_lights<R: Real>(
                     return;
                 }
                 for (at, (of_light, light)) in of.iter_mut().zip(&plan.lights).enumerate() {
-                    let sample = sample_light(light, x, [R::of(0.5); 2]);
-                    let mut ray = Ray::new(x, sample.towards, NONE);
+                    let mut ray = point_rays(light, x);
                     ray.passed = plan.passed_of(info.object);
-                    ray.hit_t = sample.distance;
                     if plan.light_passes {
                         let all = V3::splat(R::of(1.0));
                         let scene = (plan, &levels, at);
