@@ -167,7 +167,12 @@ struct Smoothed {
 
 impl Smoothed {
     /// Twin of `smooth_sizes`; `None` where the watcher asked for an end.
-    fn smooth_sizes(search: &NeighborSearch<'_>, count: usize, k: usize, watch: &dyn Watch) -> Option<Self> {
+    fn smooth_sizes(
+        search: &NeighborSearch<'_>,
+        count: usize,
+        k: usize,
+        watch: &dyn Watch,
+    ) -> Option<Self> {
         watch.stage("measuring feature sizes", count as u64);
         let mut lists = Vec::with_capacity(count * k);
         for first in (0..count).step_by(FIT_BATCH) {

@@ -51,7 +51,7 @@ impl Traced {
     }
 
     /// Whether they start at the camera.
-    pub fn from_camera(self) -> bool {
+    pub fn is_from_camera(self) -> bool {
         self == Self::Camera
     }
 }

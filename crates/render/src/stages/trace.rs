@@ -51,7 +51,7 @@ impl Frame<'_> {
 
     /// What rays go through that are not the camera's of a tile.
     pub fn structure_of(&self, traced: Traced) -> StructureKind {
-        let from = if traced.from_camera() { RaysFrom::Camera } else { RaysFrom::Surface };
+        let from = if traced.is_from_camera() { RaysFrom::Camera } else { RaysFrom::Surface };
         self.renderer.structures.of(&self.plan, from)
     }
 
@@ -81,7 +81,7 @@ impl Frame<'_> {
                 .buffer(MARKS, &wave.live_marks.bits)
                 .buffer(LIVE_RAYS, &wave.live_rays[0]),
             bound,
-            start: if traced.from_camera() { Start::Camera } else { Start::Surface },
+            start: if traced.is_from_camera() { Start::Camera } else { Start::Surface },
             rays: rays.form.rays(),
         };
         if let Some(structure) = structures.get(through) {
