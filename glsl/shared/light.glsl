@@ -7,6 +7,7 @@
 #ifndef LIGHT_GLSL
 #define LIGHT_GLSL
 #include "stages/wave.glsl"
+#include "direction.glsl"
 #include "math.glsl"
 #include "sampler.glsl"
 
@@ -18,17 +19,6 @@ struct LightSample {
     float distance; // to the light's surface along it; NO_HIT: infinite
     vec3 arriving;  // irradiance, to be multiplied by max(0, n . towards)
 };
-
-// The direction at sines (s.x, s.y) about a unit axis (frame after Duff et al., Building an
-// Orthonormal Basis, Revisited, JCGT 2017).
-vec3 about_axis(vec3 axis, vec2 s, float cosine) {
-    float side = axis.z >= 0.0 ? 1.0 : -1.0;
-    float a = -1.0 / (side + axis.z);
-    float b = axis.x * axis.y * a;
-    vec3 first = vec3(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
-    vec3 second = vec3(b, side + axis.y * axis.y * a, -axis.y);
-    return (s.x * first + s.y * second) + cosine * axis;
-}
 
 // What arrives at x from the place on the light that u in the unit square stands for; (1/2, 1/2) is
 // the centre. Inside a sphere the light is as strong as on its surface, and comes from half of all

@@ -1,6 +1,18 @@
-//! Twin of `glsl/shared/direction.glsl`: a unit vector in 32 bits.
+//! Twin of `glsl/shared/direction.glsl`: unit vectors: about an axis, and in 32 bits.
 
 use crate::real::{Real, V3};
+
+/// The direction at two sines about a unit axis.
+pub(crate) fn about_axis<R: Real>(axis: V3<R>, s: [R; 2], cosine: R) -> V3<R> {
+    let one = R::of(1.0);
+    let [x, y, z] = axis.0;
+    let side = if z >= R::of(0.0) { one } else { -one };
+    let a = -one / (side + z);
+    let b = x * y * a;
+    let first = V3([one + side * x * x * a, side * b, -side * x]);
+    let second = V3([b, side + y * y * a, -y]);
+    (first.times(s[0]) + second.times(s[1])) + axis.times(cosine)
+}
 
 /// The outer corners of the square, which are the lower half of the octahedron, are folded inwards, and back.
 fn folded<R: Real>([x, y]: [R; 2]) -> [R; 2] {

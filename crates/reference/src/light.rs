@@ -1,5 +1,6 @@
 //! Twin of `glsl/shared/light.glsl`: a place on a light, and what arrives from there.
 
+use crate::direction::about_axis;
 use crate::real::{NO_HIT, Real, V3};
 use crate::sampler::concentric_disc;
 use kernels::layout::{LIGHT_POINT, Light};
@@ -18,18 +19,6 @@ pub struct LightSample<R> {
     pub distance: R,
     /// Irradiance, to be multiplied by max(0, n · towards).
     pub arriving: V3<R>,
-}
-
-/// The direction at two sines about a unit axis.
-fn about_axis<R: Real>(axis: V3<R>, s: [R; 2], cosine: R) -> V3<R> {
-    let one = R::of(1.0);
-    let [x, y, z] = axis.0;
-    let side = if z >= R::of(0.0) { one } else { -one };
-    let a = -one / (side + z);
-    let b = x * y * a;
-    let first = V3([one + side * x * x * a, side * b, -side * x]);
-    let second = V3([b, side + y * y * a, -y]);
-    (first.times(s[0]) + second.times(s[1])) + axis.times(cosine)
 }
 
 /// What arrives at x from the place on the light that u in the unit square stands for; (½, ½) is its
