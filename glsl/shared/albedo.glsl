@@ -2,8 +2,6 @@
 //
 // twin    crates/reference/src/albedo.rs
 // reads   the object's own, its texture, or what its points have: colours, or places in the texture
-// Its buffers are bound by AlbedoIo in crates/render/src/passes/albedo.rs. Kernels that include it need
-// not declare polynomials, objects, cells and slots again.
 #ifndef ALBEDO_GLSL
 #define ALBEDO_GLSL
 #include "stages/points.glsl"

@@ -4,7 +4,7 @@ use crate::camera_rays::Ray;
 use crate::polynomial::Polynomial;
 use crate::real::{Real, V3};
 
-/// Where a ray met a surface (`Hit` in `glsl/shared/layout.glsl`).
+/// Where a ray met a surface (`Hit` in `glsl/stages/rays.glsl`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit<R> {
     /// Centred scene space.
