@@ -5,7 +5,8 @@ use std::path::Path;
 use std::{env, fs, io};
 
 fn main() -> io::Result<()> {
-    let folder = Path::new(&env::var("CARGO_MANIFEST_DIR").unwrap_or_default()).join("spirv");
+    let folder =
+        Path::new(&env::var("CARGO_MANIFEST_DIR").map_err(io::Error::other)?).join("spirv");
     let mut files: Vec<_> =
         fs::read_dir(&folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
     files.sort();
@@ -15,5 +16,8 @@ fn main() -> io::Result<()> {
         let _ = writeln!(list, "({stem:?}, include_bytes!({file:?})),");
     }
     println!("cargo:rerun-if-changed={}", folder.display());
-    fs::write(Path::new(&env::var("OUT_DIR").unwrap_or_default()).join("modules.rs"), list + "]\n")
+    fs::write(
+        Path::new(&env::var("OUT_DIR").map_err(io::Error::other)?).join("modules.rs"),
+        list + "]\n",
+    )
 }

@@ -28,7 +28,7 @@
 #include "levels.glsl"
 #include "scene.glsl"
 #include "shape.glsl"
-#include "polynomial.glsl"
+#include "nearest_hit.glsl"
 #include "state.glsl"
 #include "structure.glsl"
 
@@ -57,22 +57,8 @@ void main() {
     uvec3 at = cell_of_id(here.grid, alive ? cell - here.first_cell : 0u); // once: lavapipe divides integers lane by lane
     uvec2 range = alive ? range_at(cell) : uvec2(0u);
     uint next = range.x + ray.cursor;
-    uint hit_object = NONE, hit_index = NONE;
-    if (alive && ray.hit_slot != NONE) {
-        Polynomial hit = polynomial_at(ray.hit_slot);
-        hit_object = hit.object;
-        hit_index = hit.index;
-    }
-#ifdef LEAVING
-    // The sheet that the ray starts on.
-    vec3 left_normal = vec3(0.0);
-    uint left_object = NONE;
-    if (alive && ray.left != NONE) {
-        Polynomial left = polynomial_at(ray.left);
-        left_normal = normal_at(left, o);
-        left_object = left.object;
-    }
-#endif
+    Nearest nearest = nearest_of(ray, alive);
+    LeftSheet left = left_sheet(ray, alive);
 
     while (alive && cells_left > 0u && work_left > 0u) {
         uint first = next & ~3u; // slots are read four at a time
@@ -98,32 +84,8 @@ void main() {
             uint slot = slot_at(first + uint(findLSB(candidates)));
             candidates &= candidates - 1u;
             Polynomial p = polynomial_at(slot);
-#ifdef LEAVING
-            bool own = p.object == left_object && same_sheet(p, o, left_normal);
-            float from = own ? SHEET_REACH * p.center_trust.w : 0.0;
-            if (scene_has(SCENE_VOLUMES) && scene_has(SCENE_CLEAR)) {
-                bool starts_near = ray.left == NONE && p.object == (params.passed ^ PASSED_NEAR);
-                from = starts_near ? SHEET_REACH * p.center_trust.w : from;
-            }
-            if (scene_has(SCENE_SPHERES)) from = is_sphere(p.gradient_offset.xyz) ? 0.0 : from;
-#else
-            float from = 0.0;
-#endif
-            float t = intersect(o, d, p, from);
-#ifdef LEAVING
-            if (scene_has(SCENE_SPHERES)) {
-                bool is_left = slot == ray.left && is_sphere(p.gradient_offset.xyz);
-                t = is_left ? far_side(o, d, p.center_trust.xyz) : t;
-            }
-            if (scene_has(SCENE_VOLUMES)) t = p.object == params.passed ? NO_HIT : t;
-#endif
-            bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);
-            bool nearer = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);
-            bool better = nearer && (!scene_has(SCENE_REFINES) || t > ray.after);
-            ray.hit_t = better ? t : ray.hit_t;
-            ray.hit_slot = better ? slot : ray.hit_slot;
-            hit_object = better ? p.object : hit_object;
-            hit_index = better ? p.index : hit_index;
+            float t = meeting_distance(ray, slot, p, left, params.passed);
+            take_nearer(ray, nearest, slot, p, t);
             ++solved;
         }
         ray.tests += end - next;

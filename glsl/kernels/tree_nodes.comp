@@ -1,6 +1,6 @@
 // tree_nodes: the nodes of one level of the tree, each around eight boxes of the level below.
 //
-// reads   polynomials      with LEAVES: the level below are the surfaces of points
+// reads   polynomials      with SURFACES: the level below are the surfaces of points
 //         boxes            else: the boxes around the nodes of the level below
 // writes  nodes            of this level
 //         boxes            around them; no box where all children are empty
@@ -15,8 +15,6 @@
 #include "index.glsl"
 #include "math.glsl"
 #include "node.glsl"
-#ifdef LEAVES
-#endif
 #include "tree.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
@@ -26,7 +24,7 @@ layout(push_constant) uniform Push { TreeLevelParams params; };
 
 // The box of the child at `at`, of those of the level below, if anything is inside.
 bool child_box(uint at, out vec3 low, out vec3 high) {
-#ifdef LEAVES
+#ifdef SURFACES
     Polynomial p = polynomial_at(at);
     patch_box(p, low, high);
     return p.center_trust.w > 0.0;

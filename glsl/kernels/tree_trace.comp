@@ -34,7 +34,7 @@ void main() {
     Ray ray = load_ray(index);
     TreePlace at = before_root();
     if (ray.cell != RAY_STARTS) {
-        uvec2 more = state_start_at(index).zw;
+        uvec2 more = kept_words(index);
         at = TreePlace(ray.cell, uvec2(ray.cursor, more.x), more.y);
     }
     bool alive = walk_tree(ray, at, params.tree, params.wave.work, params.wave.any_hit != 0u, params.wave.passed);
@@ -42,7 +42,7 @@ void main() {
     state_out[index].direction.w = ray.cells;
     state_out[index].cell = uvec4(alive ? at.node : NONE, at.pending.x, ray.tests, ray.hit_slot);
     if (alive) {
-        state_out[index].start.zw = uvec2(at.pending.y, at.backwards);
+        keep_words(index, uvec2(at.pending.y, at.backwards));
         count_live(place);
     }
 }

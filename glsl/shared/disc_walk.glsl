@@ -17,7 +17,7 @@
 #ifdef PACKETS
 #include "packet.glsl"
 #endif
-#include "polynomial.glsl"
+#include "nearest_hit.glsl"
 #include "state.glsl"
 
 #define LEAF_MASK ((1u << LEAF_BITS) - 1u)
@@ -73,12 +73,7 @@ void walk_discs(inout Ray ray, uvec2 range, DepthRanks ranks, uint work) {
     uint work_left = work;
     uint next = range.x + ray.cursor;
     bool alive = ray.cell != NONE && next < range.y;
-    uint hit_object = NONE, hit_index = NONE;
-    if (alive && ray.hit_slot != NONE) {
-        Polynomial hit = polynomial_at(ray.hit_slot);
-        hit_object = hit.object;
-        hit_index = hit.index;
-    }
+    Nearest nearest = nearest_of(ray, alive);
 
 #ifdef PACKETS
     while (packet_ballot(alive) != 0u && work_left > 0u) {
@@ -105,14 +100,7 @@ void walk_discs(inout Ray ray, uvec2 range, DepthRanks ranks, uint work) {
             uint slot = slot_of_bit(leaves, uint(findLSB(candidates)));
             candidates &= candidates - 1u;
             Polynomial p = polynomial_at(slot);
-            float t = intersect(o, d, p, 0.0);
-            bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);
-            bool nearer = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);
-            bool better = nearer && t > ray.after;
-            ray.hit_t = better ? t : ray.hit_t;
-            ray.hit_slot = better ? slot : ray.hit_slot;
-            hit_object = better ? p.object : hit_object;
-            hit_index = better ? p.index : hit_index;
+            take_nearer(ray, nearest, slot, p, intersect(o, d, p, 0.0));
         }
         next = end;
         work_left -= min(work_left, 2u * tested + 2u); // the same for all of a packet

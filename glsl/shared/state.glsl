@@ -55,6 +55,11 @@ Ray load_ray(uint at) {
 StateRay stored_state(uint ray) {
     return state_at(ray);
 }
+
+// What keep_words has kept.
+uvec2 kept_words(uint ray) {
+    return state_start_at(ray).zw;
+}
 #endif
 
 #ifdef STATE_WRITES
@@ -66,6 +71,11 @@ void store_ray(uint at, Ray ray) {
     state_out[at].cell = uvec4(ray.cell, ray.cursor, ray.tests, ray.hit_slot);
     state_out[at].start.xy = uvec2(ray.left, floatBitsToUint(ray.after));
     if (scene_has(SCENE_LEVELS)) state_out[at].start.z = ray.entry;
+}
+
+// Two words more that a structure keeps of a ray of a queue, in place of `entry`, which is the grids' own.
+void keep_words(uint at, uvec2 words) {
+    state_out[at].start.zw = words;
 }
 
 // A ray that has gone on: it starts where it did.

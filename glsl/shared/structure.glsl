@@ -6,10 +6,11 @@
 //
 // The kernel of a structure, NAME_trace, runs once per ray of the wave, or per ray that is listed, again and again until
 // no ray lives. `new_ray` leaves RAY_STARTS in a ray's cell: the structure begins with it. To go on with it in another
-// pass, the structure keeps what it likes in cell, cursor and entry; NONE in the cell says that the ray is done.
+// pass, the structure keeps what it likes in cell and cursor, and in two words more (keep_words, kept_words; `entry` is the
+// grids' own); NONE in the cell says that the ray is done.
 //
-// Of all polynomials that a ray meets beyond `after` it finds the nearest, of equals the first in the order of (object,
-// index), to the bit what any other structure finds. With LEAVING, rays start on surfaces, whose own sheet they
+// Which polynomial a ray hits, nearest_hit.glsl says. Of all that a ray meets beyond `after` it is the nearest, of equals the first in the order of (object,
+// index), to the bit what any other structure finds. (Discs ask the grids only whether a ray meets their boxes.) With LEAVING, rays start on surfaces, whose own sheet they
 // do not meet again at once, and may end at any hit: those towards lights. Light for the points of a volume passes the
 // surface of its own object.
 #ifndef STRUCTURE_GLSL

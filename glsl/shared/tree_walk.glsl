@@ -13,7 +13,7 @@
 #include "stages/tree.glsl"
 #include "stages/rays.glsl"
 #include "math.glsl"
-#include "polynomial.glsl"
+#include "nearest_hit.glsl"
 #include "scene.glsl"
 #include "shape.glsl"
 #include "state.glsl"
@@ -83,22 +83,8 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
     uint node = place.node, backwards = place.backwards;
     uvec2 pending = place.pending;
     bool alive = ray.cell != NONE;
-    uint hit_object = NONE, hit_index = NONE;
-    if (alive && ray.hit_slot != NONE) {
-        Polynomial hit = polynomial_at(ray.hit_slot);
-        hit_object = hit.object;
-        hit_index = hit.index;
-    }
-#ifdef LEAVING
-    // The sheet that the ray starts on.
-    vec3 left_normal = vec3(0.0);
-    uint left_object = NONE;
-    if (alive && ray.left != NONE) {
-        Polynomial left = polynomial_at(ray.left);
-        left_normal = normal_at(left, o);
-        left_object = left.object;
-    }
-#endif
+    Nearest nearest = nearest_of(ray, alive);
+    LeftSheet left = left_sheet(ray, alive);
     uint work_left = work;
     while (alive && work_left > 0u) {
         uint looks = NODES_AT_ONCE;
@@ -115,8 +101,8 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
             node >>= 3u * up;
             backwards >>= up;
 
-            uint left = pending.x & 255u;
-            uint child = (backwards & 1u) != 0u ? uint(findMSB(left)) : uint(findLSB(left));
+            uint children_left = pending.x & 255u;
+            uint child = (backwards & 1u) != 0u ? uint(findMSB(children_left)) : uint(findLSB(children_left));
             pending.x &= ~(1u << child);
             uint below = node * LEAF_POINTS + child;
             bool is_leaf = below >= tree.first_leaf;
@@ -144,34 +130,10 @@ bool walk_tree(inout Ray ray, inout TreePlace place, TreeInfo tree, uint work, b
             set2 = done ? set3 : set2;
             set3 = done ? 0u : set3;
             Polynomial p = polynomial_at(slot);
-#ifdef LEAVING
-            bool own = p.object == left_object && same_sheet(p, o, left_normal);
-            float from = own ? SHEET_REACH * p.center_trust.w : 0.0;
-            if (scene_has(SCENE_VOLUMES) && scene_has(SCENE_CLEAR)) {
-                bool starts_near = ray.left == NONE && p.object == (passed ^ PASSED_NEAR);
-                from = starts_near ? SHEET_REACH * p.center_trust.w : from;
-            }
-            if (scene_has(SCENE_SPHERES)) from = is_sphere(p.gradient_offset.xyz) ? 0.0 : from;
-#else
-            float from = 0.0;
-#endif
             // The test of all lists: from far away, what `intersect` says of a ball's rim is a matter of rounding.
             bool near = near_trust_ball(o, d, p.center_trust, ray.hit_t);
-            float t = near ? intersect(o, d, p, from) : NO_HIT;
-#ifdef LEAVING
-            if (scene_has(SCENE_SPHERES)) {
-                bool is_left = near && slot == ray.left && is_sphere(p.gradient_offset.xyz);
-                t = is_left ? far_side(o, d, p.center_trust.xyz) : t;
-            }
-            if (scene_has(SCENE_VOLUMES)) t = p.object == passed ? NO_HIT : t;
-#endif
-            bool first_of_equals = p.object < hit_object || (p.object == hit_object && p.index < hit_index);
-            bool nearer = t < ray.hit_t || (t == ray.hit_t && t < NO_HIT && first_of_equals);
-            bool better = nearer && (!scene_has(SCENE_REFINES) || t > ray.after);
-            ray.hit_t = better ? t : ray.hit_t;
-            ray.hit_slot = better ? slot : ray.hit_slot;
-            hit_object = better ? p.object : hit_object;
-            hit_index = better ? p.index : hit_index;
+            float t = near ? meeting_distance(ray, slot, p, left, passed) : NO_HIT;
+            take_nearer(ray, nearest, slot, p, t);
             ++solved;
         }
         ray.tests += solved;

@@ -173,6 +173,12 @@ pub enum GpuError {
         /// Bytes that it has.
         expected: usize,
     },
+    /// A kernel votes in subgroups, which this device cannot.
+    #[error("kernel '{kernel}' votes in subgroups, and the device does not; please report it")]
+    NoVotes {
+        /// The kernel.
+        kernel: &'static str,
+    },
     /// A module is not one this crate can run.
     #[error("kernel '{kernel}' is not a usable SPIR-V module: {reason}; rebuild the kernels")]
     BadModule {

@@ -291,7 +291,7 @@ fn slots(module: &Reflection, texel: impl Fn(u32) -> Option<Texel>) -> Result<Ve
         let access = resource.access;
         match slots.iter_mut().find(|slot| slot.binding == binding) {
             // Two variables may share a binding; one that writes is enough.
-            Some(slot) if slot.kind == kind => {
+            Some(slot) if slot.kind == kind && slot.texel == of_texel => {
                 slot.access = if access == Access::Write { access } else { slot.access };
             }
             Some(_) => return Err(format!("{} is of two kinds", name_of(binding))),
@@ -311,6 +311,9 @@ pub(crate) fn name_of(binding: u32) -> String {
 fn check_limits(device: &Device, source: &Source) -> Result<(), GpuError> {
     let Source { name: kernel, module, slots, .. } = source;
     let push_bytes = module.push_bytes;
+    if module.votes && device.limits().subgroup_size == 0 {
+        return Err(GpuError::NoVotes { kernel });
+    }
     let limits = &device.vk_limits;
     let count = |kind| slots.iter().filter(|slot| slot.kind == kind).count() as u32;
     let buffers = count(Binding::StorageBuffer);

@@ -21,6 +21,8 @@ pub(crate) struct Reflection {
     pub(crate) push_bytes: usize,
     /// Whether it has a specialization constant 0.
     pub(crate) is_specialized: bool,
+    /// Whether its invocations vote in subgroups.
+    pub(crate) votes: bool,
 }
 
 /// One variable with a binding.
@@ -42,6 +44,7 @@ pub(crate) enum ResourceKind {
 }
 
 mod op {
+    pub(super) const CAPABILITY: u16 = 17;
     pub(super) const ENTRY_POINT: u16 = 15;
     pub(super) const EXECUTION_MODE: u16 = 16;
     pub(super) const TYPE_INT: u16 = 21;
@@ -74,6 +77,8 @@ const MAGIC: u32 = 0x0723_0203;
 const HEADER_WORDS: usize = 5;
 const MODEL_GL_COMPUTE: u32 = 5;
 const MODE_LOCAL_SIZE: u32 = 17;
+const CAPABILITY_BALLOT: u32 = 64;
+const CAPABILITY_SUBGROUP_BALLOT_KHR: u32 = 4423;
 const BUILT_IN_WORKGROUP_SIZE: u32 = 25;
 const STORAGE_UNIFORM_CONSTANT: u32 = 0;
 const STORAGE_UNIFORM: u32 = 2;
@@ -123,6 +128,7 @@ impl Reflection {
         let mut group_size = None;
         let mut found = Declarations::default();
         let mut size_by_constant = HashSet::new();
+        let mut votes = false;
         let mut rest = words.get(HEADER_WORDS..).unwrap_or(&[]);
         while let Some(&first) = rest.first() {
             let length = (first >> 16) as usize;
@@ -137,6 +143,9 @@ impl Reflection {
                     if entry.replace(string(name)?).is_some() {
                         return Err("it has more than one compute entry point".to_owned());
                     }
+                }
+                (op::CAPABILITY, [CAPABILITY_BALLOT | CAPABILITY_SUBGROUP_BALLOT_KHR]) => {
+                    votes = true
                 }
                 (op::EXECUTION_MODE, &[_, MODE_LOCAL_SIZE, x, y, z]) => {
                     group_size = Some([x, y, z]);
@@ -155,8 +164,12 @@ impl Reflection {
         if group_size.contains(&0) {
             return Err("its workgroup size is zero along an axis".to_owned());
         }
-        let (resources, push_bytes) = (found.resources(), found.push_bytes());
-        Ok(Self { entry, group_size, resources, push_bytes, is_specialized: found.is_specialized })
+        let resources = found.resources();
+        let push_bytes = found
+            .push_bytes()
+            .ok_or("its push constants have a member of another size than 4 bytes")?;
+        let is_specialized = found.is_specialized;
+        Ok(Self { entry, group_size, resources, push_bytes, is_specialized, votes })
     }
 }
 
@@ -173,8 +186,9 @@ impl Declarations {
                 self.scalars.insert(id, texel);
             }
             (op::TYPE_VECTOR, &[id, scalar, count]) => {
-                let size = self.sizes.get(&scalar).copied().unwrap_or(0);
-                self.sizes.insert(id, size * count as usize);
+                if let Some(size) = self.sizes.get(&scalar).copied() {
+                    self.sizes.insert(id, size * count as usize);
+                }
             }
             (op::TYPE_ARRAY, &[id, element, count]) => {
                 self.arrays.insert(id, [element, count]);
@@ -237,27 +251,34 @@ impl Declarations {
         }
     }
 
-    /// Bytes of the push constants; none where there are none.
-    fn push_bytes(&self) -> usize {
+    /// Bytes of the push constants; `None` where it is not known.
+    fn push_bytes(&self) -> Option<usize> {
         let block = self.variables.iter().find(|of| of.storage == STORAGE_PUSH_CONSTANT);
-        block.and_then(|of| self.pointees.get(&of.pointer)).map_or(0, |&block| self.size(block))
+        match block.and_then(|of| self.pointees.get(&of.pointer)) {
+            Some(&block) => self.size(block),
+            None => Some(0),
+        }
     }
 
-    /// Of a type, in bytes, without what is behind a struct's last member.
-    fn size(&self, id: u32) -> usize {
+    /// Of a type, in bytes, without what follows a struct's last member; `None` where it is none of numbers of 4 bytes.
+    fn size(&self, id: u32) -> Option<usize> {
         if let Some(members) = self.struct_members.get(&id) {
-            let end = |(at, member): (usize, &u32)| {
-                let offset = self.offsets.get(&(id, at as u32)).copied().unwrap_or(0);
-                offset as usize + self.size(*member)
-            };
-            return members.iter().enumerate().map(end).max().unwrap_or(0);
+            let ends = members.iter().enumerate().map(|(at, &member)| {
+                let offset = *self.offsets.get(&(id, at as u32))? as usize;
+                Some(offset + self.size(member)?)
+            });
+            return ends
+                .collect::<Option<Vec<_>>>()
+                .map(|ends| ends.into_iter().max().unwrap_or(0));
         }
         if let Some([element, count]) = self.arrays.get(&id) {
-            let stride =
-                self.strides.get(&id).map_or_else(|| self.size(*element), |&at| at as usize);
-            return stride * self.constants.get(count).copied().unwrap_or(0) as usize;
+            let stride = match self.strides.get(&id) {
+                Some(&stride) => stride as usize,
+                None => self.size(*element)?,
+            };
+            return Some(stride * *self.constants.get(count)? as usize);
         }
-        self.sizes.get(&id).copied().unwrap_or(0)
+        self.sizes.get(&id).copied()
     }
 
     fn resources(&self) -> Vec<Resource> {

@@ -10,7 +10,7 @@ const DECORATION_NO_CONTRACTION: u32 = 42;
 
 /// `OpFNegate`, `OpFAdd`, `OpFSub`, `OpFMul`, `OpFDiv`, `OpFRem`, `OpFMod`, and the products of
 /// vectors and matrices with scalars and one another (SPIR-V specification, 3.52.13).
-const ARITHMETIC: [u32; 14] =
+pub const FLOAT_ARITHMETIC: [u32; 14] =
     [127, 129, 131, 133, 136, 140, 141, 142, 143, 144, 145, 146, 147, 148];
 
 /// The same module with `NoContraction` on every float arithmetic instruction. Decorations that are
@@ -32,7 +32,7 @@ pub fn forbid_contraction(module: &[u32]) -> Vec<u32> {
             if operand(2) == Some(DECORATION_NO_CONTRACTION) {
                 decorated.extend(operand(1));
             }
-        } else if ARITHMETIC.contains(&opcode) {
+        } else if FLOAT_ARITHMETIC.contains(&opcode) {
             results.extend(operand(2));
         }
         at += length;

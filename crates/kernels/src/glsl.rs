@@ -417,6 +417,18 @@ mod tests {
         }
     }
 
+    /// Elements that are read as texels fill them, and single numbers alone are read four at a time.
+    #[test]
+    fn readers_take_whole_texels() {
+        for binding in bindings().filter(|binding| binding.reader.is_some()) {
+            let element = binding.element.expect("no image is read");
+            let size = element.size();
+            assert!([4, 8].contains(&size) || size.is_multiple_of(16), "{}: {size}", binding.name);
+            let by_four = binding.texel == 4 && size == 4;
+            assert!(by_four || binding.texel == element.texel(), "{}: by four", binding.name);
+        }
+    }
+
     #[test]
     fn no_two_bindings_have_a_number_in_common() {
         let numbers: BTreeSet<u32> = bindings().map(|binding| binding.number).collect();

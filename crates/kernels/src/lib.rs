@@ -15,5 +15,5 @@ mod prune;
 pub mod source;
 pub mod spirv;
 
-pub use exact::forbid_contraction;
+pub use exact::{FLOAT_ARITHMETIC, forbid_contraction};
 pub use prune::without_unused;

@@ -6,6 +6,8 @@
 use std::collections::HashSet;
 
 const HEADER_WORDS: usize = 5;
+/// SPIR-V 1.3: from 1.4 on, entry points list resources too.
+const LATEST: u32 = 0x0001_0300;
 const OP_NAME: u32 = 5;
 const OP_VARIABLE: u32 = 59;
 const OP_DECORATE: u32 = 71;
@@ -17,6 +19,9 @@ const RESOURCES: [u32; 3] = [0, 2, 12];
 #[must_use]
 pub fn without_unused(module: &[u32]) -> Vec<u32> {
     let Some(instructions) = instructions(module) else { return module.to_vec() };
+    if module[1] > LATEST {
+        return module.to_vec();
+    }
     let body = instructions.iter().position(|of| of[0] & 0xffff == OP_FUNCTION);
     let body = &instructions[body.unwrap_or(instructions.len())..];
     // Literals may look like ids: what seems used for one stays, which harms nothing.

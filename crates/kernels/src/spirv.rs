@@ -76,8 +76,8 @@ axes! {
         /// On a surface, whose own sheet they do not meet again at once.
         Surface = "leaving" [LEAVING],
     }
-    /// How rays from the camera find their points.
-    Way {
+    /// What the camera's rays go through.
+    Camera {
         /// By the discs of their screen tile.
         Discs = "" [],
         /// Through the tree.
@@ -88,7 +88,7 @@ axes! {
         /// The boxes of the level below.
         Boxes = "" [],
         /// The surfaces of points.
-        Surfaces = "leaves" [LEAVES],
+        Surfaces = "surfaces" [SURFACES],
     }
     /// Which rays go through volumes.
     Marching {
@@ -139,7 +139,7 @@ kernels! {
     /// The camera's ray of each pixel.
     camera_rays(rays: Rays);
     /// The first wave from the eye to the film, where rays of a queue need none.
-    camera_trace(way: Way);
+    camera_trace(through: Camera);
     /// Where each cell's entries begin.
     cell_offsets();
     /// What becomes of each ray of a wave.
@@ -240,8 +240,8 @@ pub fn is_traversal(kernel: &str) -> bool {
     kernel.ends_with("_trace")
 }
 
-/// A committed module. There is no way to make another, so who has one may trust it to be valid SPIR-V with one
-/// compute entry point.
+/// A committed module. There is no way to make another, so who has one may trust it: its words are valid SPIR-V
+/// with one compute entry point, or none, where it was not committed.
 #[derive(Debug)]
 pub struct Module {
     name: String,

@@ -1,5 +1,6 @@
 //! What a frame cost.
 
+use kernels::layout::NONE;
 use kernels::spirv;
 use std::time::Duration;
 
@@ -48,6 +49,14 @@ impl Traced {
     /// Whether they go to a light.
     pub fn to_light(self) -> bool {
         matches!(self, Self::Shadows | Self::PastObject(_))
+    }
+
+    /// The object whose surface is not there for them, or `NONE`.
+    pub fn passed(self) -> u32 {
+        match self {
+            Self::PastObject(object) => object,
+            _ => NONE,
+        }
     }
 
     /// Whether they start at the camera.

@@ -211,7 +211,7 @@ macro_rules! stage {
     (
         $(#![doc = $about:literal])*
         $stage:literal needs [$($needs:literal),*]
-        constants { $($(#[doc = $cdoc:literal])* $constant:ident = $value:literal;)* }
+        constants { $($(#[doc = $cdoc:literal])* $constant:ident = $value:expr;)* }
         bindings from $first:literal {
             $($(#[doc = $bdoc:literal])* $binding:ident: $element:tt $(by $texel:literal)? $(as $reader:ident)?;)*
         }

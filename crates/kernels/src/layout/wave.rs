@@ -17,11 +17,11 @@ stage! {
         /// Bit: it encloses a medium, which rays are inside or outside of.
         MATERIAL_INSIDE = 1024;
         /// [`ObjectInfo::material`] of Lambert's law: the number of the kind, and its bits.
-        MATERIAL_DIFFUSE = 256;
+        MATERIAL_DIFFUSE = MATERIAL_LIT;
         /// [`ObjectInfo::material`] of a perfect mirror.
-        MATERIAL_MIRROR = 513;
+        MATERIAL_MIRROR = 1 | MATERIAL_SENDS;
         /// [`ObjectInfo::material`] of smooth glass.
-        MATERIAL_GLASS = 1538;
+        MATERIAL_GLASS = 2 | MATERIAL_SENDS | MATERIAL_INSIDE;
         /// Surfaces that a path may pass through that do not change its medium.
         MOST_CROSSINGS = 1024;
         /// [`Path::channels`] of a ray that carries all three.

@@ -42,10 +42,7 @@ impl Frame<'_> {
         light: u32,
         traced: Traced,
     ) -> Result<(), RenderError> {
-        let passed = match traced {
-            Traced::PastObject(object) => object,
-            _ => NONE,
-        };
+        let passed = traced.passed();
         let light_passes = self.plan.light_passes;
         let (lamp_count, lamp_media) = self.plan.lamp_media_of(light);
         let counts = u32::from(passed == NONE);
@@ -53,6 +50,7 @@ impl Frame<'_> {
         let (rays, invocations) = (self.rays(), line(ray_count));
         let through = self.structure_of(traced);
         let mut alive = ray_count;
+        // Leg by leg, each traced to its end: what is left of the way after a surface that lets light pass.
         while alive > 0 {
             self.trace_to_the_end([ray_count, alive], traced, through)?;
             if light_passes {

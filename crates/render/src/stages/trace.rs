@@ -6,7 +6,7 @@ use crate::renderer::Renderer;
 use crate::stats::Traced;
 use crate::structure::TracePass;
 use gpu::Bindings;
-use kernels::layout::{LIVE_RAYS, MARKS, NONE, TraceParams};
+use kernels::layout::{LIVE_RAYS, MARKS, TraceParams};
 use kernels::spirv::Start;
 use plan::{RaysFrom, StructureKind};
 
@@ -29,10 +29,7 @@ impl Frame<'_> {
     ) -> Result<(), RenderError> {
         let cells = if self.plan.cells_per_pass == 0 { u32::MAX } else { self.plan.cells_per_pass };
         let any_hit = u32::from(traced.to_light() && !self.plan.light_passes);
-        let passed = match traced {
-            Traced::PastObject(object) => object,
-            _ => NONE,
-        };
+        let passed = traced.passed();
         let mut params = TraceParams { ray_count, cells, work: 0, any_hit, listed: 0, passed };
         self.until_none_lives(alive, Some(traced), |frame, alive| {
             params.work = frame.renderer.run.budget.work();
@@ -84,8 +81,9 @@ impl Frame<'_> {
             start: if traced.is_from_camera() { Start::Camera } else { Start::Surface },
             rays: rays.form.rays(),
         };
-        if let Some(structure) = structures.get(through) {
-            structure.trace(&mut run.recorder, &pass);
-        }
+        // What rays go through is one that the renderer has.
+        let structure = structures.get(through);
+        let structure = structure.unwrap_or_else(|| unreachable!("{through:?}: not built"));
+        structure.trace(&mut run.recorder, &pass);
     }
 }

@@ -10,7 +10,7 @@ use kernels::layout::{
     CameraTraceParams, DISC_KEYS, DISC_LEAVES, DISC_OFFSETS, DISC_TILES, DepthRanks, DiscParams,
     DiscTraceParams, LEAF_POINTS, POLYNOMIALS,
 };
-use kernels::spirv::{self, Module, Rays, Way};
+use kernels::spirv::{self, Camera, Module, Rays};
 use plan::{MAX_DISC_PAIRS, Plan, Window, screen_tiles};
 use points::device::{Pairs, Scan, Sort, SortSpace, Surfaces, line};
 use std::sync::Arc;
@@ -180,7 +180,7 @@ impl Discs {
 fn module_at_once(device: &Device) -> Option<&'static Module> {
     let subgroup = device.limits().subgroup_size;
     let has_packets = subgroup != 0 && subgroup.is_multiple_of(PACKET);
-    has_packets.then(|| spirv::camera_trace(Way::Discs))
+    has_packets.then(|| spirv::camera_trace(Camera::Discs))
 }
 
 impl Structure for Discs {
@@ -195,7 +195,7 @@ impl Structure for Discs {
 
     /// They cross no cells, so that K does not count.
     fn trace(&self, recorder: &mut Recorder, pass: &TracePass<'_>) {
-        let Some(lists) = &self.lists else { return };
+        let lists = self.lists.as_ref().unwrap_or_else(|| unreachable!("a tile was taken"));
         let params = DiscTraceParams { wave: *pass.params, ranks: lists.ranks };
         let recorded = recorder.pass(spirv::disc_trace(self.rays));
         pass.record(recorded, &lists.bindings(), &params);

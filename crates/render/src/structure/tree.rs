@@ -3,7 +3,7 @@
 use super::{Modules, Structure, TracePass};
 use gpu::{Bindings, Device, Recorder};
 use kernels::layout::{CameraTraceParams, TREE_NODES, TreeInfo, TreeTraceParams};
-use kernels::spirv::{self, Module, Start, Way};
+use kernels::spirv::{self, Camera, Module, Start};
 use points::device;
 
 /// The tree of a scene, for rays of a queue.
@@ -18,7 +18,7 @@ impl Tree {
     }
 
     pub fn modules(start: Start) -> Modules {
-        let at_once = Some(spirv::camera_trace(Way::Tree));
+        let at_once = Some(spirv::camera_trace(Camera::Tree));
         Modules { trace: Some(spirv::tree_trace(start)), at_once, tile: Vec::new() }
     }
 }
@@ -35,6 +35,6 @@ impl Structure for Tree {
         params: &mut CameraTraceParams,
     ) -> Option<(&'static Module, Bindings)> {
         params.tree = self.info;
-        Some((spirv::camera_trace(Way::Tree), self.nodes.clone()))
+        Some((spirv::camera_trace(Camera::Tree), self.nodes.clone()))
     }
 }
