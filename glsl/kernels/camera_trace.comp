@@ -46,7 +46,7 @@ layout(std430, binding = LIT_HITS) writeonly buffer LitHits { LitHit lit_hits[];
 layout(std430, binding = HITS) writeonly buffer Hits { Hit hits[]; };
 layout(push_constant) uniform Push { CameraTraceParams params; };
 
-// Rays from the camera start outside of everything here.
+// Rays from the camera start outside everything here.
 uint media_word(uint ray, uint word) {
     return 0u;
 }

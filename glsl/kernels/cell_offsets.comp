@@ -2,7 +2,7 @@
 //
 // reads   grid
 //         keys             cells, ascending; numbers from the count of cells on belong to none
-// writes  offsets          one a cell, and one behind the last
+// writes  offsets          one a cell, and one after the last
 // runs    one invocation per entry of offsets
 // twin    none: what it is a step of has one result, which crates/reference/src/grid_build.rs makes at once
 //

@@ -20,7 +20,6 @@
 #include "gap.glsl"
 #include "rim.glsl"
 #include "index.glsl"
-#include "cloud.glsl"
 #include "nearest.glsl"
 
 layout(local_size_x = LINE_GROUP) in;

@@ -12,7 +12,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"
 #include "stages/grid.glsl"
-#include "cloud.glsl"
 #include "slab.glsl"
 #include "index.glsl"
 

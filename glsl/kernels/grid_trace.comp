@@ -120,7 +120,7 @@ void main() {
             next = range.x;
             seeking = alive && range.x == range.y;
             ray.cells += alive ? 1u : 0u;
-            cells_left -= seeking ? 0u : 1u; // of cells with points alone
+            cells_left -= seeking ? 0u : 1u; // of cells with points only
             --work_left;
         }
     }

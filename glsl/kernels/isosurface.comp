@@ -2,7 +2,7 @@
 // surface of points that they met.
 //
 // reads   the ray state, volumes, their cells, points and lengths
-//         paths            whether a ray is inside of glass
+//         paths            whether a ray is inside glass
 // writes  searches         where each ray goes on in the next pass
 //         hits, the ray state    of rays that met one: the hit, and the slot that stands for it
 //         live             how many rays are not done

@@ -12,7 +12,6 @@
 #include "stages/points.glsl"
 #include "stages/search.glsl"
 #include "index.glsl"
-#include "cloud.glsl"
 #include "node.glsl"
 
 layout(local_size_x = LINE_GROUP) in;

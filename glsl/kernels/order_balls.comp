@@ -11,7 +11,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "stages/points.glsl"
 #include "stages/grid.glsl"
-#include "cloud.glsl"
 #include "index.glsl"
 
 layout(local_size_x = LINE_GROUP) in;

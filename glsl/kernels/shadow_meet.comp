@@ -65,7 +65,7 @@ void main() {
     uint medium = medium_without(media, NONE);
     // The volume's own object, whose surface is not there: where its glass ends is not known.
     medium = medium == params.passed ? NONE : medium;
-    // Infinitely far away, rays are outside of everything: of a grazing one, the way out was not seen.
+    // Infinitely far away, rays are outside everything: of a grazing one, the way out was not seen.
     medium = ray.hit_t < NO_HIT ? medium : NONE;
     arriving *= transmittance(medium, ray.hit_t);
     bool passes = false;

@@ -12,7 +12,6 @@
 #include "stages/points.glsl"
 #include "math.glsl"
 #include "index.glsl"
-#include "cloud.glsl"
 
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = NEIGHBORS) readonly buffer Lists { uint lists[]; };

@@ -98,7 +98,7 @@ uint empty_around(uvec2 range) {
 }
 
 // The next cell behind the face at the nearest of the exits t of the box of cells `around` the cell (ties:
-// the lower axis); outside of the grid, one past some axis. Along the other axes it is where the ray is
+// the lower axis); outside the grid, one past some axis. Along the other axes it is where the ray is
 // then, in the box, and never behind where it was. Unless `skips`, the box is the cell alone.
 uvec3 next_cell(GridInfo grid, uvec3 cell, uint around, bool skips, vec3 t, vec3 o, vec3 d) {
     ivec3 from = ivec3(cell);

@@ -17,7 +17,7 @@
 
 #define MOST_MEDIA (2u * uint(MEDIA_WORDS)) // a ray inside more forgets the last it entered
 
-// What a ray is inside of.
+// What a ray is inside.
 struct Media {
     uint ray;
     uint count;
@@ -32,7 +32,7 @@ bool outranks(uint a, uint b) {
     return of_a > of_b || (of_a == of_b && a > b);
 }
 
-// The member of the highest priority, apart from `skipped`; NONE: the ray is outside of everything.
+// The member of the highest priority, apart from `skipped`; NONE: the ray is outside everything.
 uint medium_without(Media media, uint skipped) {
     if (!scene_has(SCENE_NESTED)) {
         uint member = member_of(media, 0u);

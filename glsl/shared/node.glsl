@@ -1,7 +1,7 @@
 // node: boxes in boxes over the points of an object, in the order of memory.
 //
 // Each box of a level holds LEAF_POINTS consecutive ones of the level below, the lowest as many points.
-// Levels have whole multiples of that many boxes, the highest just so many; boxes behind the last are
+// Levels have whole multiples of that many boxes, the highest just so many; boxes after the last are
 // empty. A walk keeps one number: where it is. Every box says where it goes on.
 #ifndef NODE_GLSL
 #define NODE_GLSL

@@ -29,7 +29,7 @@ uint packet_lane() {
     return gl_SubgroupInvocationID % PACKET;
 }
 
-// Whether a ball around that place, seen from the eye, is not outside of one of the planes.
+// Whether a ball around that place, seen from the eye, is not outside one of the planes.
 bool meets_packet(Packet packet, vec3 from_eye, float radius) {
     return dot3(packet.left, from_eye) >= -radius && dot3(packet.right, from_eye) >= -radius
         && dot3(packet.below, from_eye) >= -radius && dot3(packet.above, from_eye) >= -radius;

@@ -1,4 +1,4 @@
-// scene: what a scene has need of. A constant of the pipeline: lavapipe runs both sides of an `if` for every ray,
+// scene: what a scene needs. A constant of the pipeline: lavapipe runs both sides of an `if` for every ray,
 // and so does a GPU where rays differ.
 #ifndef SCENE_GLSL
 #define SCENE_GLSL

@@ -30,7 +30,7 @@ uvec3 cell_of_box(CellBox box, uint nth) {
     return box.low + uvec3(nth % box.extent.x, row % box.extent.y, row / box.extent.y);
 }
 
-// The cell that comes after this one; behind the last, any. Without the divisions above: a lane at a time, they
+// The cell that comes after this one; after the last, any. Without the divisions above: a lane at a time, they
 // took half of the time that a grid took to list.
 uvec3 next_in_box(CellBox box, uvec3 cell) {
     uint x = cell.x + 1u;

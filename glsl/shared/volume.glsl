@@ -59,7 +59,7 @@ struct FourPoints {
     vec3 y[4]; // from x
     vec4 scalars;
     vec4 squares; // of their distances from x
-    bvec4 are_there; // they are not behind the last
+    bvec4 are_there; // they are not after the last
 };
 
 // Those from a place on and before the end, which is behind it.

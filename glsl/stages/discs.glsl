@@ -59,7 +59,7 @@ uint disc_key_at(uint at) {
 }
 #endif
 
-#define DISC_LEAVES 51 // The leaf of each pair, and which of its points cover the tile; with room for four behind the last
+#define DISC_LEAVES 51 // The leaf of each pair, and which of its points cover the tile; with room for four after the last
 #ifdef TEXELS
 layout(binding = DISC_LEAVES) uniform usamplerBuffer disc_leaf_texels;
 

@@ -168,7 +168,7 @@ uvec2 range_at(uint at) {
 }
 #endif
 
-#define SLOTS 44 // The points of each cell, with room for four behind the last
+#define SLOTS 44 // The points of each cell, with room for four after the last
 #ifdef TEXELS
 layout(binding = SLOTS) uniform usamplerBuffer slot_texels;
 

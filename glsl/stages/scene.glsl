@@ -6,7 +6,7 @@
 
 #define SCENE_ENVIRONMENT 1 // Of the constant that kernels are specialized by: rays that hit nothing see an image
 #define SCENE_BLENDS 2 // Normals of an object are blended
-#define SCENE_LIGHTS 4 // There is light, and shade writes the colours of diffuse hits
+#define SCENE_LIGHTS 4 // There is light, and shade writes the colours of lit hits
 #define SCENE_ALPHA 8 // What each channel lets through is written
 #define SCENE_DIAGNOSTICS 16 // Cells crossed, points hit and iterations are written
 #define SCENE_VALUES 32 // Points of an object have colours, or places in a texture

@@ -27,9 +27,9 @@ SearchNode search_node_from(usamplerBuffer texels, int first) {
 
 // Parameters of leaf_boxes and node_boxes: one level of the boxes of an object.
 struct LevelParams { // 64 bytes
-    uint first_slot;                 //   0 Of the object.
-    uint point_count;                //   4 Of the object.
-    uint neighbors;                  //   8 k.
+    uint first_slot;                 //   0 The first slot of the object.
+    uint point_count;                //   4 How many points the object has.
+    uint neighbors;                  //   8 k, how many neighbours are asked for.
     uint level;                      //  12 0: the boxes of points.
     uint top;                        //  16 The highest level: it has LEAF_POINTS boxes.
     uint count;                      //  20 Boxes of this level, a multiple of LEAF_POINTS.
@@ -38,8 +38,8 @@ struct LevelParams { // 64 bytes
 
 // Parameters of the neighbour search for one batch of points.
 struct SearchParams { // 40 bytes
-    uint first_slot;                 //   0 Of the object.
-    uint point_count;                //   4 Of the object.
+    uint first_slot;                 //   0 The first slot of the object.
+    uint point_count;                //   4 How many points the object has.
     uint batch_first;                //   8 Place in the object of the batch's first point, a multiple of LEAF_POINTS.
     uint batch_count;                //  12 Points of the batch.
     uint neighbors;                  //  16 k: less than point_count, or 1.

@@ -14,9 +14,9 @@ struct TreeInfo { // 8 bytes
 
 // Push constants of tree_nodes: some nodes of one level of the tree.
 struct TreeLevelParams { // 24 bytes
-    uint first;                      //   0 Of these nodes.
-    uint count;                      //   4 Of these nodes.
-    uint first_of_level;             //   8 Of the whole level.
+    uint first;                      //   0 The first of these nodes.
+    uint count;                      //   4 How many they are.
+    uint first_of_level;             //   8 The first node of the whole level.
     uint first_child;                //  12 The first node of the level below.
     uint children;                   //  16 Nodes of the level below; of leaves, points.
     uint first_bound;                //  20 The node that what is bound of all begins with.

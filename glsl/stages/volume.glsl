@@ -39,7 +39,7 @@ struct VolumeInfo { // 96 bytes
     uint mode;                       //  76 What a ray shows: one of VOLUME_EMISSION and so on.
     float iso;                       //  80 Scalar on an isosurface.
     uint slot;                       //  84 Of the polynomial that stands for an isosurface, behind those of all points; of other modes, 1 where anything has an emission.
-    uint refracts;                   //  88 1: an isosurface of glass, which rays are inside or outside of.
+    uint refracts;                   //  88 1: an isosurface of glass, which rays are inside or outside.
     uint shading;                    //  92 What light does in it: one of VOLUME_EMITS and so on.
 };
 
@@ -101,8 +101,8 @@ struct March { // 80 bytes
     float depth_lost;                //  28 What rounding added to the depth.
     vec3 step_color;                 //  32 What this step sends per length, of the volumes so far.
     float step_extinction;           //  44 Of this step.
-    float numerator;                 //  48 Of this volume's scalar.
-    float denominator;               //  52 Of this volume's scalar.
+    float numerator;                 //  48 Numerator of this volume's scalar at this place, so far.
+    float denominator;               //  52 Its denominator.
     uint state;                      //  56 0: not begun, 1: on its way, 2: done, 3: once more, for along.
     uint place;                      //  60 End of a step; from bit 24 on, its part, where 0 is the whole step; in bit 31, whether a volume so far divides it.
     uint volume;                     //  64 Volume.
@@ -123,9 +123,9 @@ struct MarchLight { // 48 bytes
 // How far a ray has looked for isosurfaces.
 struct IsoSearch { // 80 bytes
     vec3 pull;                       //   0 As in MarchLight, at this place.
-    float numerator;                 //  12 Of the scalar here.
+    float numerator;                 //  12 Numerator of the scalar at this place, so far.
     vec3 weights_pull;               //  16 As in MarchLight, at this place.
-    float denominator;               //  28 Of the scalar here.
+    float denominator;               //  28 Its denominator.
     float low;                       //  32 Along the ray: the last place on the side that it comes from.
     float high;                      //  36 The first known beyond the surface.
     float value_low;                 //  40 Scalar less iso there; 0: not known.
@@ -156,7 +156,7 @@ struct MarchParams { // 48 bytes
 struct PointLightParams { // 16 bytes
     uint first;                      //   0 Point in the points of all volumes.
     uint count;                      //   4 Points of this batch.
-    uint light;                      //   8 Which.
+    uint light;                      //   8 Which light the rays go to.
     uint volume;                     //  12 Whose points they are.
 };
 

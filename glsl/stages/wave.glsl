@@ -9,7 +9,7 @@
 #define MEDIA_WORDS 8 // Words of a path's set of media: two media each
 #define MATERIAL_LIT 256 // Bit of ObjectInfo.material: lights of the scene light the surface
 #define MATERIAL_SENDS 512 // Bit: rays go on from it
-#define MATERIAL_INSIDE 1024 // Bit: it encloses a medium, which rays are inside or outside of
+#define MATERIAL_INSIDE 1024 // Bit: it encloses a medium, which rays are inside or outside
 #define MATERIAL_DIFFUSE 256 // ObjectInfo.material of Lambert's law: the number of the kind, and its bits
 #define MATERIAL_MIRROR 513 // ObjectInfo.material of a perfect mirror
 #define MATERIAL_GLASS 1538 // ObjectInfo.material of smooth glass
@@ -172,7 +172,7 @@ struct ShadowParams { // 48 bytes
     uint ray_count;                  //   0 Shadow rays.
     uint passed;                     //   4 Object whose surface is not there, or NONE.
     uint counts;                     //   8 1: the work of rays is counted in the film.
-    uint lamp_count;                 //  12 Objects that the light may be inside of; NONE: it is not known which.
+    uint lamp_count;                 //  12 Objects that the light may be inside; NONE: it is not known which.
     uint lamp_media[8];              //  16 Those, 16 bits each.
 };
 

@@ -202,9 +202,9 @@ kernels! {
     scan_apply();
     /// Prefix sums, first half.
     scan_reduce();
-    /// Reflected and refracted rays.
+    /// The rays that surfaces send on.
     scatter(rays: Rays);
-    /// Lambert's law at the diffuse hits.
+    /// What lit surfaces make of the light that reaches them.
     shade(rays: Rays);
     /// Shadow rays on the other side of surfaces that let them through.
     shadow_go_on(rays: Rays);

@@ -50,7 +50,7 @@ pub struct Fitted<R> {
 }
 
 /// Fits the polynomial of one point. `list` holds its neighbours' slots, nearest
-/// first, `NONE` behind the last; `size` is its h, where that is smoothed.
+/// first, `NONE` after the last; `size` is its h, where that is smoothed.
 #[must_use]
 pub fn fit_polynomial<R: Real>(
     points: &[Point],

@@ -127,7 +127,7 @@ fn isosurfaces<'a, R>(
 }
 
 /// The nearest isosurface on a ray that ends at `end`: the hit, and the slot that stands for it. `media` are
-/// those it is inside of.
+/// those it is inside.
 pub fn isosurface<R: Real>(
     ray: &Ray<R>,
     mut end: R,

@@ -266,7 +266,7 @@ impl<'a, R: Real> Way<'a, R> {
     }
 }
 
-/// Follows a ray that ends at `end` through all volumes. `media` are those it is inside of.
+/// Follows a ray that ends at `end` through all volumes. `media` are those it is inside.
 pub fn march<R: Real>(
     ray: &Ray<R>,
     end: R,

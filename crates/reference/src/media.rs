@@ -43,7 +43,7 @@ impl Media {
         Self(objects.to_vec())
     }
 
-    /// Whether the ray is outside of everything.
+    /// Whether the ray is outside everything.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -55,7 +55,7 @@ impl Media {
         others.reduce(|best, member| if outranks(member, best, objects) { member } else { best })
     }
 
-    /// Whether the ray is inside of an object.
+    /// Whether the ray is inside an object.
     #[must_use]
     pub fn contains(&self, object: u32) -> bool {
         self.0.contains(&object)

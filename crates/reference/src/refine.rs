@@ -20,7 +20,7 @@ const MAX_LISTED: u32 = 2048;
 /// The points of each cell, each point once.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct PointCells {
-    /// First entry of each cell in `slots`, and one behind the last.
+    /// First entry of each cell in `slots`, and one after the last.
     pub offsets: Vec<u32>,
     /// Slots, cell after cell.
     pub slots: Vec<u32>,

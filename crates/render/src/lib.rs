@@ -1,9 +1,9 @@
 //! The frontend: drives the passes of a [`Plan`] on a device.
 //!
 //! [`Renderer::new`] builds the surfaces once; [`Renderer::frame`] traces them, as often as one
-//! likes. A tile's rays live in four storage images, and four more that a pass writes: after each
-//! pass they swap, until no ray lives (section 5 of the paper). Any number of cells a pass gives the
-//! same bytes, which the test `every_k_gives_the_same_bytes` checks.
+//! likes. A tile's rays live in a queue in a buffer, or, as in section 5 of the paper, in four storage
+//! images and four more that a pass writes, which swap after each pass. Any number of cells a pass gives
+//! the same bytes, which the test `every_k_gives_the_same_bytes` checks.
 #![forbid(unsafe_code)]
 
 mod ahead;

@@ -79,7 +79,7 @@ impl FrameStats {
             Some(Traced::Camera) => &mut kinds.camera,
             Some(Traced::Shadows) => &mut kinds.shadow,
             Some(Traced::Scattered) => &mut kinds.scattered,
-            // Of rays from points, no count of rays has any.
+            // Rays from points of volumes are in no count of rays.
             Some(Traced::PastObject(_)) | None => return,
         };
         let traversal = passes.iter().filter(|pass| spirv::is_traversal(pass.0));

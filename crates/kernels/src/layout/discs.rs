@@ -15,7 +15,7 @@ stage! {
         DISC_OFFSETS: u32 as disc_offset;
         /// Screen tile and rank of each pair, front to back within a tile once they are sorted.
         DISC_KEYS: u32 as disc_key;
-        /// The leaf of each pair, and which of its points cover the tile; with room for four behind the last.
+        /// The leaf of each pair, and which of its points cover the tile; with room for four after the last.
         DISC_LEAVES: u32 by 4 as disc_leaf;
         /// First and past-the-last pair of each screen tile.
         DISC_TILES: [u32; 2] as disc_range;

@@ -66,7 +66,7 @@ stage! {
         LEVELS: GridLevel;
         /// First and past-the-last entry of each cell in `SLOTS`.
         CELLS: [u32; 2] as range;
-        /// The points of each cell, with room for four behind the last.
+        /// The points of each cell, with room for four after the last.
         SLOTS: u32 by 4 as slot;
     }
     structs {

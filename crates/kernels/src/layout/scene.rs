@@ -10,7 +10,7 @@ stage! {
         SCENE_ENVIRONMENT = 1;
         /// Normals of an object are blended.
         SCENE_BLENDS = 2;
-        /// There is light, and `shade` writes the colours of diffuse hits.
+        /// There is light, and `shade` writes the colours of lit hits.
         SCENE_LIGHTS = 4;
         /// What each channel lets through is written.
         SCENE_ALPHA = 8;

@@ -43,11 +43,11 @@ stage! {
         }
         /// Parameters of `leaf_boxes` and `node_boxes`: one level of the boxes of an object.
         LevelParams {
-            /// Of the object.
+            /// The first slot of the object.
             first_slot: u32,
-            /// Of the object.
+            /// How many points the object has.
             point_count: u32,
-            /// k.
+            /// k, how many neighbours are asked for.
             neighbors: u32,
             /// 0: the boxes of points.
             level: u32,
@@ -60,9 +60,9 @@ stage! {
         }
         /// Parameters of the neighbour search for one batch of points.
         SearchParams {
-            /// Of the object.
+            /// The first slot of the object.
             first_slot: u32,
-            /// Of the object.
+            /// How many points the object has.
             point_count: u32,
             /// Place in the object of the batch's first point, a multiple of [`LEAF_POINTS`].
             batch_first: u32,

@@ -25,11 +25,11 @@ stage! {
         }
         /// Push constants of `tree_nodes`: some nodes of one level of the tree.
         TreeLevelParams {
-            /// Of these nodes.
+            /// The first of these nodes.
             first: u32,
-            /// Of these nodes.
+            /// How many they are.
             count: u32,
-            /// Of the whole level.
+            /// The first node of the whole level.
             first_of_level: u32,
             /// The first node of the level below.
             first_child: u32,

@@ -96,7 +96,7 @@ stage! {
             /// Of the polynomial that stands for an isosurface, behind those of all points; of other modes, 1 where anything has an
             /// emission.
             slot: u32,
-            /// 1: an isosurface of glass, which rays are inside or outside of.
+            /// 1: an isosurface of glass, which rays are inside or outside.
             refracts: u32,
             /// What light does in it: one of `VOLUME_EMITS` and so on.
             shading: u32,
@@ -152,9 +152,9 @@ stage! {
             step_color: [f32; 3],
             /// Of this step.
             step_extinction: f32,
-            /// Of this volume's scalar.
+            /// Numerator of this volume's scalar at this place, so far.
             numerator: f32,
-            /// Of this volume's scalar.
+            /// Its denominator.
             denominator: f32,
             /// 0: not begun, 1: on its way, 2: done, 3: once more, for `along`.
             state: u32,
@@ -188,11 +188,11 @@ stage! {
         IsoSearch {
             /// As in [`MarchLight`], at this place.
             pull: [f32; 3],
-            /// Of the scalar here.
+            /// Numerator of the scalar at this place, so far.
             numerator: f32,
             /// As in [`MarchLight`], at this place.
             weights_pull: [f32; 3],
-            /// Of the scalar here.
+            /// Its denominator.
             denominator: f32,
             /// Along the ray: the last place on the side that it comes from.
             low: f32,
@@ -244,7 +244,7 @@ stage! {
             first: u32,
             /// Points of this batch.
             count: u32,
-            /// Which.
+            /// Which light the rays go to.
             light: u32,
             /// Whose points they are.
             volume: u32,

@@ -14,7 +14,7 @@ stage! {
         MATERIAL_LIT = 256;
         /// Bit: rays go on from it.
         MATERIAL_SENDS = 512;
-        /// Bit: it encloses a medium, which rays are inside or outside of.
+        /// Bit: it encloses a medium, which rays are inside or outside.
         MATERIAL_INSIDE = 1024;
         /// [`ObjectInfo::material`] of Lambert's law: the number of the kind, and its bits.
         MATERIAL_DIFFUSE = MATERIAL_LIT;
@@ -269,7 +269,7 @@ stage! {
             passed: u32,
             /// 1: the work of rays is counted in the film.
             counts: u32,
-            /// Objects that the light may be inside of; `NONE`: it is not known which.
+            /// Objects that the light may be inside; `NONE`: it is not known which.
             lamp_count: u32,
             /// Those, 16 bits each.
             lamp_media: [u32; MEDIA_WORDS as usize],

@@ -31,7 +31,7 @@ impl<R: Real> ToLight<'_, R> {
             let passed = self.passed & !PASSED_NEAR;
             path.media.retain(|object| lamp.contains(&object) || object == passed);
         }
-        // Infinitely far away, rays are outside of everything: of a grazing one, the way out was not seen.
+        // Infinitely far away, rays are outside everything: of a grazing one, the way out was not seen.
         let is_finite = ray.hit_t < R::of(NO_HIT);
         let medium = path.media.medium(objects).filter(|&medium| medium != self.passed);
         let medium = medium.filter(|_| is_finite);

@@ -18,7 +18,7 @@ impl Grid {
         Self { scene: scene | if skips { SCENE_SKIPS } else { 0 } }
     }
 
-    /// Whether cells are skipped, their number says.
+    /// None are known ahead: `grid_trace` is specialized by whether cells are skipped, and that follows from how many there are.
     pub fn modules() -> Modules {
         Modules { trace: None, at_once: None, tile: Vec::new() }
     }
