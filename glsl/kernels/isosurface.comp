@@ -23,6 +23,7 @@
 #include "stages/wave.glsl"
 #include "stages/volume.glsl"
 #include "math.glsl"
+#include "members.glsl"
 #include "volume.glsl"
 #include "state.glsl"
 #include "index.glsl"
@@ -59,7 +60,7 @@ layout(push_constant) uniform Push { MarchParams params; };
 bool is_inside(uint path, uint object) {
     bool found = false;
     for (uint i = 0u; i < paths[path].media_count; ++i) {
-        found = found || bitfieldExtract(paths[path].media[i / 2u], 16 * int(i & 1u), 16) == object;
+        found = found || member_in(paths[path].media[i / 2u], i) == object;
     }
     return found;
 }

@@ -56,7 +56,7 @@ void store_path(uint to, uint from, Path path, vec3 throughput, uint channels, b
         uint mover = leaves ? member_of(Media(from, count), last) : object;
         for (uint word = 0u; word < uint(MEDIA_WORDS); ++word) {
             uint both = media_word(from, word);
-            uint changed = bitfieldInsert(both, mover, 16 * int(moved & 1u), 16);
+            uint changed = with_member(both, moved, mover);
             next_paths[to].media[word] = moved / 2u == word ? changed : both;
         }
     } else {

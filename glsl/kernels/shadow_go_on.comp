@@ -39,7 +39,7 @@ uint media_word(uint ray, uint word) {
 
 void put_member(uint at, uint place, uint object) {
     uint both = shadow_paths[at].media[place / 2u];
-    shadow_paths[at].media[place / 2u] = bitfieldInsert(both, object, 16 * int(place & 1u), 16);
+    shadow_paths[at].media[place / 2u] = with_member(both, place, object);
 }
 
 void main() {

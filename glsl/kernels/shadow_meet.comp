@@ -33,7 +33,7 @@ uint media_word(uint ray, uint word) {
 
 void put_member(uint at, uint place, uint object) {
     uint both = shadow_paths[at].media[place / 2u];
-    shadow_paths[at].media[place / 2u] = bitfieldInsert(both, object, 16 * int(place & 1u), 16);
+    shadow_paths[at].media[place / 2u] = with_member(both, place, object);
 }
 
 // The last part of the way ends at the light: what that is not inside, the ray has left unseen, as where it grazes a
@@ -45,7 +45,7 @@ void leave_what_the_light_is_outside(uint at) {
         bool stays = params.lamp_count == NONE || member == (params.passed & ~PASSED_NEAR);
         uint asked = params.lamp_count == NONE ? 0u : params.lamp_count;
         for (uint j = 0u; j < asked; ++j) {
-            stays = stays || member == bitfieldExtract(params.lamp_media[j / 2u], 16 * int(j & 1u), 16);
+            stays = stays || member == member_in(params.lamp_media[j / 2u], j);
         }
         put_member(at, kept, member);
         kept += stays ? 1u : 0u;

@@ -107,7 +107,9 @@ vec3 scattered(uint object, vec3 light, vec3 albedo) {
 
 // Of each channel, whether light goes straight through a surface on its way to a place inside `media`.
 bvec3 lets_light_pass(uint object, Media media, uint way) {
-    if ((object_material_at(object) & uint(MATERIAL_INSIDE)) == 0u) return bvec3(false);
-    return glass_lets_light_pass(crossing_of(media, object, way));
+    switch (object_material_at(object)) {
+    case uint(MATERIAL_GLASS): return glass_lets_light_pass(crossing_of(media, object, way));
+    }
+    return bvec3(false);
 }
 #endif

@@ -12,6 +12,7 @@
 #include "stages/scene.glsl"
 #include "stages/wave.glsl"
 #include "math.glsl"
+#include "members.glsl"
 #include "objects.glsl"
 #include "scene.glsl"
 
@@ -24,7 +25,7 @@ struct Media {
 };
 
 uint member_of(Media media, uint nth) {
-    return bitfieldExtract(media_word(media.ray, nth / 2u), 16 * int(nth & 1u), 16);
+    return member_in(media_word(media.ray, nth / 2u), nth);
 }
 
 bool outranks(uint a, uint b) {

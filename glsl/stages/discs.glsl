@@ -29,7 +29,7 @@ struct DiscTraceParams { // 40 bytes
     DepthRanks ranks;                //  24 How pairs of a screen tile are ordered.
 };
 
-#define DISC_OFFSETS 49 // Counts, then offsets, by leaf
+#define DISC_OFFSETS 43 // Counts, then offsets, by leaf
 #ifdef TEXELS
 layout(binding = DISC_OFFSETS) uniform usamplerBuffer disc_offset_texels;
 
@@ -44,7 +44,7 @@ uint disc_offset_at(uint at) {
 }
 #endif
 
-#define DISC_KEYS 50 // Screen tile and rank of each pair, front to back within a tile once they are sorted
+#define DISC_KEYS 44 // Screen tile and rank of each pair, front to back within a tile once they are sorted
 #ifdef TEXELS
 layout(binding = DISC_KEYS) uniform usamplerBuffer disc_key_texels;
 
@@ -59,7 +59,7 @@ uint disc_key_at(uint at) {
 }
 #endif
 
-#define DISC_LEAVES 51 // The leaf of each pair, and which of its points cover the tile; with room for four after the last
+#define DISC_LEAVES 45 // The leaf of each pair, and which of its points cover the tile; with room for four after the last
 #ifdef TEXELS
 layout(binding = DISC_LEAVES) uniform usamplerBuffer disc_leaf_texels;
 
@@ -84,7 +84,7 @@ uvec4 disc_leaf_four_at(uint at) {
 }
 #endif
 
-#define DISC_TILES 52 // First and past-the-last pair of each screen tile
+#define DISC_TILES 46 // First and past-the-last pair of each screen tile
 #ifdef TEXELS
 layout(binding = DISC_TILES) uniform usamplerBuffer disc_range_texels;
 

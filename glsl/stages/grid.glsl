@@ -65,19 +65,19 @@ struct SortParams { // 16 bytes
     uint bits;                       //  12 Bits of the digit, DIGIT_BITS at most.
 };
 
-#define GRID_INFO 20 // The grid that is built
+#define GRID_INFO 16 // The grid that is built
 
-#define GRID_ORDER 21 // Slots by ordinal
+#define GRID_ORDER 17 // Slots by ordinal
 
-#define GRID_OFFSETS 22 // Counts, then offsets, by ordinal
+#define GRID_OFFSETS 18 // Counts, then offsets, by ordinal
 
-#define GRID_KEYS 23 // The cell of each pair, ascending once they are sorted
+#define GRID_KEYS 19 // The cell of each pair, ascending once they are sorted
 
-#define GRID_SLOTS 24 // The slot of each pair
+#define GRID_SLOTS 20 // The slot of each pair
 
-#define GRID_LARGE 25 // Counts, then offsets, of large balls only, by ordinal
+#define GRID_LARGE 21 // Counts, then offsets, of large balls only, by ordinal
 
-#define GRID_BALLS 26 // Trust balls in the order of (object, index): centre and radius
+#define GRID_BALLS 22 // Trust balls in the order of (object, index): centre and radius
 #ifdef TEXELS
 layout(binding = GRID_BALLS) uniform usamplerBuffer ball_texels;
 
@@ -92,35 +92,35 @@ vec4 ball_at(uint at) {
 }
 #endif
 
-#define SKIP_MARKS_IN 27 // Cells that are marked, 32 of a row a word
+#define SKIP_MARKS_IN 23 // Cells that are marked, 32 of a row a word
 
-#define SKIP_MARKS_OUT 28 // Those that are marked next
+#define SKIP_MARKS_OUT 24 // Those that are marked next
 
-#define SKIP_OCCUPIED 29 // Cells with points
+#define SKIP_OCCUPIED 25 // Cells with points
 
-#define SKIP_BESIDE 30 // Those at most one cell from these
+#define SKIP_BESIDE 26 // Those at most one cell from these
 
-#define SKIP_NEAR 31 // At most two
+#define SKIP_NEAR 27 // At most two
 
-#define SKIP_FAR 32 // At most three
+#define SKIP_FAR 28 // At most three
 
-#define SCAN_VALUES 33 // Turned into prefix sums in place
+#define SCAN_VALUES 29 // Turned into prefix sums in place
 
-#define SCAN_SUMS 34 // Sums of runs, or what comes before each
+#define SCAN_SUMS 30 // Sums of runs, or what comes before each
 
-#define SORT_KEYS_IN 35 // Keys to sort
+#define SORT_KEYS_IN 31 // Keys to sort
 
-#define SORT_SLOTS_IN 36 // What travels with them
+#define SORT_SLOTS_IN 32 // What travels with them
 
-#define SORT_HISTOGRAM 37 // [digit][run]
+#define SORT_HISTOGRAM 33 // [digit][run]
 
-#define SORT_KEYS_OUT 38 // Sorted keys
+#define SORT_KEYS_OUT 34 // Sorted keys
 
-#define SORT_SLOTS_OUT 39 // What travelled with them
+#define SORT_SLOTS_OUT 35 // What travelled with them
 
-#define CELL_OFFSETS 40 // First entry of each cell among the listed points
+#define CELL_OFFSETS 36 // First entry of each cell among the listed points
 
-#define LISTED_POINTS 41 // Points, cell after cell
+#define LISTED_POINTS 37 // Points, cell after cell
 #ifdef TEXELS
 layout(binding = LISTED_POINTS) uniform usamplerBuffer listed_point_texels;
 
@@ -151,9 +151,9 @@ uint listed_point_slot_at(uint at) {
 }
 #endif
 
-#define LEVELS 42 // The grids of the scene
+#define LEVELS 38 // The grids of the scene
 
-#define CELLS 43 // First and past-the-last entry of each cell in SLOTS
+#define CELLS 39 // First and past-the-last entry of each cell in SLOTS
 #ifdef TEXELS
 layout(binding = CELLS) uniform usamplerBuffer range_texels;
 
@@ -168,7 +168,7 @@ uvec2 range_at(uint at) {
 }
 #endif
 
-#define SLOTS 44 // The points of each cell, with room for four after the last
+#define SLOTS 40 // The points of each cell, with room for four after the last
 #ifdef TEXELS
 layout(binding = SLOTS) uniform usamplerBuffer slot_texels;
 

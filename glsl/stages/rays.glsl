@@ -90,7 +90,7 @@ struct MarkParams { // 12 bytes
     uint listed;                     //   8 1: marks are of the rays of a list.
 };
 
-#define STATE_IN 54 // The ray state read: a queue, or the first of four images
+#define STATE_IN 47 // The ray state read: a queue, or the first of four images
 #ifdef TEXELS
 layout(binding = STATE_IN) uniform usamplerBuffer state_texels;
 
@@ -137,23 +137,23 @@ uvec4 state_start_at(uint at) {
 }
 #endif
 
-#define DIRECTION_IN 55 // The second
+#define DIRECTION_IN 48 // The second
 
-#define CELL_IN 56 // The third
+#define CELL_IN 49 // The third
 
-#define START_IN 57 // The fourth
+#define START_IN 50 // The fourth
 
-#define STATE_OUT 58 // The ray state written: a queue, or the first of four images
+#define STATE_OUT 51 // The ray state written: a queue, or the first of four images
 
-#define DIRECTION_OUT 59 // The second
+#define DIRECTION_OUT 52 // The second
 
-#define CELL_OUT 60 // The third
+#define CELL_OUT 53 // The third
 
-#define START_OUT 61 // The fourth
+#define START_OUT 54 // The fourth
 
-#define LIVE 62 // How many rays are not done, and one more count
+#define LIVE 55 // How many rays are not done, and one more count
 
-#define HITS 63 // Where rays met surfaces, by ray
+#define HITS 56 // Where rays met surfaces, by ray
 #ifdef TEXELS
 layout(binding = HITS) uniform usamplerBuffer hit_texels;
 
@@ -200,13 +200,13 @@ uint hit_status_at(uint at) {
 }
 #endif
 
-#define MARKS 64 // A bit a ray
+#define MARKS 57 // A bit a ray
 
-#define MARK_OFFSETS 65 // How many marks each word has, then how many come before
+#define MARK_OFFSETS 58 // How many marks each word has, then how many come before
 
-#define LIVE_RAYS 66 // The rays that are marked, in order
+#define LIVE_RAYS 59 // The rays that are marked, in order
 
-#define LIST_IN 67 // The rays whose marks these are, where they are listed
+#define LIST_IN 60 // The rays whose marks these are, where they are listed
 
-#define CAMERA_FILTER 68 // Where the reconstruction filter's integral takes equal steps
+#define CAMERA_FILTER 61 // Where the reconstruction filter's integral takes equal steps
 #endif

@@ -50,7 +50,7 @@ struct SearchParams { // 40 bytes
     uint listed;                     //  36 How many leaves of the batch are looked at again, with a larger capacity; 0: all are looked at.
 };
 
-#define SEARCH_NODES 12 // Boxes of an object, level over level
+#define SEARCH_NODES 10 // Boxes of an object, level over level
 #ifdef TEXELS
 layout(binding = SEARCH_NODES) uniform usamplerBuffer search_node_texels;
 
@@ -97,9 +97,9 @@ uint search_node_next_at(uint at) {
 }
 #endif
 
-#define SEARCH_BOUNDS 13 // Of each point of the batch, d² that holds k others
+#define SEARCH_BOUNDS 11 // Of each point of the batch, d² that holds k others
 
-#define SEARCH_LEAVES 14 // Leaves that the balls of each leaf of the batch touch
+#define SEARCH_LEAVES 12 // Leaves that the balls of each leaf of the batch touch
 #ifdef TEXELS
 layout(binding = SEARCH_LEAVES) uniform usamplerBuffer search_leaf_texels;
 
@@ -124,9 +124,9 @@ uvec4 search_leaf_four_at(uint at) {
 }
 #endif
 
-#define SEARCH_COUNTS 15 // How many those are, or NONE: more than there is room for
+#define SEARCH_COUNTS 13 // How many those are, or NONE: more than there is room for
 
-#define SEARCH_GROUPS 16 // Leaves of the batch that are looked at again
+#define SEARCH_GROUPS 14 // Leaves of the batch that are looked at again
 
-#define SEARCH_TIES 17 // Of a search without ties: which leaves of the batch have some all the same
+#define SEARCH_TIES 15 // Of a search without ties: which leaves of the batch have some all the same
 #endif

@@ -28,9 +28,9 @@ struct TreeTraceParams { // 32 bytes
     TreeInfo tree;                   //  24 The tree's.
 };
 
-#define TREE_BOXES 46 // The boxes around the nodes
+#define TREE_BOXES 41 // The boxes around the nodes
 
-#define TREE_NODES 47 // The nodes, four times four words each (tree.glsl)
+#define TREE_NODES 42 // The nodes, four times four words each (tree.glsl)
 #ifdef TEXELS
 layout(binding = TREE_NODES) uniform usamplerBuffer node_part_texels;
 

@@ -176,9 +176,9 @@ struct ShadowParams { // 48 bytes
     uint lamp_media[8];              //  16 Those, 16 bits each.
 };
 
-#define CAMERA_PATH 70 // The path of every ray from the camera, but for its pixel
+#define CAMERA_PATH 62 // The path of every ray from the camera, but for its pixel
 
-#define PATHS 71 // Of the rays of the wave, by ray
+#define PATHS 63 // Of the rays of the wave, by ray
 #ifdef TEXELS
 layout(binding = PATHS) uniform usamplerBuffer path_texels;
 
@@ -265,13 +265,13 @@ float path_depth_at(uint at) {
 }
 #endif
 
-#define NEXT_PATHS 72 // Of the rays of the next wave
+#define NEXT_PATHS 64 // Of the rays of the next wave
 
-#define SHADOW_PATHS 73 // Of shadow rays, where light may pass surfaces
+#define SHADOW_PATHS 65 // Of shadow rays, where light may pass surfaces
 
-#define LIT_MARKS 74 // Marks of the rays that hit a surface that lamps light
+#define LIT_MARKS 66 // Marks of the rays that hit a surface that lamps light
 
-#define LIT_RAYS 75 // Those rays
+#define LIT_RAYS 67 // Those rays
 #ifdef TEXELS
 layout(binding = LIT_RAYS) uniform usamplerBuffer lit_ray_texels;
 
@@ -286,7 +286,7 @@ uint lit_ray_at(uint at) {
 }
 #endif
 
-#define LIT_HITS 76 // Where each did, by ray
+#define LIT_HITS 68 // Where each did, by ray
 #ifdef TEXELS
 layout(binding = LIT_HITS) uniform usamplerBuffer lit_hit_texels;
 
@@ -333,11 +333,11 @@ uint lit_hit_view_at(uint at) {
 }
 #endif
 
-#define LIGHT_SUMS 77 // What the lights send to those hits, and what the light of now would
+#define LIGHT_SUMS 69 // What the lights send to those hits, and what the light of now would
 
-#define SCATTERING_MARKS 78 // Marks of the rays that hit a surface that sends rays on
+#define SCATTERING_MARKS 70 // Marks of the rays that hit a surface that sends rays on
 
-#define SCATTERING_RAYS 79 // Those rays
+#define SCATTERING_RAYS 71 // Those rays
 #ifdef TEXELS
 layout(binding = SCATTERING_RAYS) uniform usamplerBuffer scattering_ray_texels;
 
@@ -352,7 +352,7 @@ uint scattering_ray_at(uint at) {
 }
 #endif
 
-#define NEXT_MARKS 80 // Two marks a ray, for the rays of the next wave that it makes
+#define NEXT_MARKS 72 // Two marks a ray, for the rays of the next wave that it makes
 #ifdef TEXELS
 layout(binding = NEXT_MARKS) uniform usamplerBuffer next_mark_texels;
 
@@ -367,7 +367,7 @@ uvec2 next_mark_at(uint at) {
 }
 #endif
 
-#define NEXT_OFFSETS 81 // Where the rays that those of each word of marks make begin in the next wave
+#define NEXT_OFFSETS 73 // Where the rays that those of each word of marks make begin in the next wave
 #ifdef TEXELS
 layout(binding = NEXT_OFFSETS) uniform usamplerBuffer next_offset_texels;
 
@@ -382,9 +382,9 @@ uint next_offset_at(uint at) {
 }
 #endif
 
-#define TALLY 82 // Counts of rays
+#define TALLY 74 // Counts of rays
 
-#define OBJECTS 83 // By object
+#define OBJECTS 75 // By object
 #ifdef TEXELS
 layout(binding = OBJECTS) uniform usamplerBuffer object_texels;
 
@@ -527,11 +527,11 @@ int object_priority_at(uint at) {
 }
 #endif
 
-#define COLORS 84 // Three floats a point, or two: a place in a texture
+#define COLORS 76 // Three floats a point, or two: a place in a texture
 
-#define LIGHTS 85 // The lamps of the scene
+#define LIGHTS 77 // The lamps of the scene
 
-#define IMAGES 86 // Textures and the environment
+#define IMAGES 78 // Textures and the environment
 
-#define TEXELS_OF_IMAGES 87 // A table of sRGB, and the texels of all images
+#define TEXELS_OF_IMAGES 79 // A table of sRGB, and the texels of all images
 #endif

@@ -122,6 +122,70 @@ fn group_sizes_and_bindings_match_the_host() {
     assert_eq!(used, all, "bindings that kernels use (left) and that the host lists (right)");
 }
 
+/// A list is of the struct that the host says, and an image where it says so.
+#[test]
+fn what_is_bound_is_what_the_host_says() {
+    let mut compared = 0;
+    for (kernel, module) in modules() {
+        let instruction =
+            |id: u32| module.types_global_values.iter().find(|line| line.result_id == Some(id));
+        let operand = |line: &rspirv::dr::Instruction, at: usize| {
+            line.operands.get(at).and_then(Operand::id_ref_any)
+        };
+        let names: BTreeMap<u32, &str> = module
+            .debug_names
+            .iter()
+            .filter_map(|line| match line.operands.as_slice() {
+                [Operand::IdRef(id), Operand::LiteralString(name)] => Some((*id, name.as_str())),
+                _ => None,
+            })
+            .collect();
+        for line in &module.annotations {
+            let &[
+                Operand::IdRef(variable),
+                Operand::Decoration(Decoration::Binding),
+                Operand::LiteralBit32(number),
+            ] = line.operands.as_slice()
+            else {
+                continue;
+            };
+            let host = layout::binding(number).expect("a binding of the host");
+            let what = format!("{}: {}", kernel.name(), host.name);
+            let pointer = instruction(variable).and_then(|line| line.result_type);
+            let pointee = pointer.and_then(instruction).and_then(|line| operand(line, 1));
+            let bound = pointee.and_then(instruction).expect("a type");
+            match bound.class.opcode {
+                // The first image of a ray state has the binding of the queue.
+                Op::TypeImage => {
+                    let is_state = [layout::STATE_IN, layout::STATE_OUT].contains(&number);
+                    assert!(host.element.is_none() || is_state, "{what}: an image");
+                }
+                Op::TypeStruct => {
+                    let member = operand(bound, 0).and_then(instruction).expect("a member");
+                    let element = match member.class.opcode {
+                        Op::TypeRuntimeArray => operand(member, 0),
+                        _ => member.result_id,
+                    };
+                    let is_struct = element
+                        .and_then(instruction)
+                        .is_some_and(|line| line.class.opcode == Op::TypeStruct);
+                    let name = element.filter(|_| is_struct).and_then(|id| names.get(&id).copied());
+                    match host.element {
+                        Some(layout::Type::Struct(expected)) => {
+                            assert_eq!(name, Some(expected.name), "{what}");
+                            compared += 1;
+                        }
+                        Some(layout::Type::Numbers(..)) => assert_eq!(name, None, "{what}"),
+                        None => panic!("{what}: a buffer, and the host has an image"),
+                    }
+                }
+                _ => assert!(host.reader.is_some(), "{what}: texels without a reader"),
+            }
+        }
+    }
+    assert!(compared > 100, "{compared} lists of structs");
+}
+
 /// A float operation that a driver may fuse is a pixel that differs from the twin.
 #[test]
 fn every_float_operation_is_exact() {

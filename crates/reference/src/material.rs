@@ -135,9 +135,9 @@ pub(crate) fn lets_light_pass(
     objects: &[ObjectInfo],
     (media, way): (&Media, Way),
 ) -> [bool; 3] {
-    match has_inside(&objects[object as usize]) {
-        true => glass::lets_light_pass(&media.crossing(object, way, objects), objects),
-        false => [false; 3],
+    match objects[object as usize].material {
+        MATERIAL_GLASS => glass::lets_light_pass(&media.crossing(object, way, objects), objects),
+        _ => [false; 3],
     }
 }
 
@@ -145,7 +145,9 @@ pub(crate) fn lets_light_pass(
 mod tests {
     use super::*;
     use bytemuck::Zeroable;
-    use kernels::layout::{CHANNELS_ALL, Constant, MATERIAL_LIT, MATERIAL_SENDS, STAGES};
+    use kernels::layout::{
+        CHANNELS_ALL, Constant, MATERIAL_INSIDE, MATERIAL_LIT, MATERIAL_SENDS, STAGES,
+    };
 
     const GLSL: &str = include_str!("../../../glsl/shared/material.glsl");
 
@@ -157,8 +159,9 @@ mod tests {
             let (_, after) = GLSL.split_once(head).unwrap_or_else(|| panic!("no '{head}'"));
             after.split("\n}\n").next().unwrap().to_owned()
         };
-        let [sends, lights, scatters] =
-            ["\nSent sent_on(", "\nvec3 lobe(", "\nvec3 scattered("].map(body);
+        let [sends, lights, scatters, passes] =
+            ["\nSent sent_on(", "\nvec3 lobe(", "\nvec3 scattered(", "\nbvec3 lets_light_pass("]
+                .map(body);
         let bits = ["MATERIAL_LIT", "MATERIAL_SENDS", "MATERIAL_INSIDE"];
         let all = STAGES.iter().flat_map(|stage| stage.constants);
         let is_kind = |name: &str| name.starts_with("MATERIAL_") && !bits.contains(&name);
@@ -170,6 +173,8 @@ mod tests {
             assert_eq!(sends.contains(&case), sent, "{name}: sent_on");
             assert_eq!(lights.contains(&case), lit, "{name}: lobe");
             assert_eq!(scatters.contains(&case), lit, "{name}: scattered");
+            let inside = material & MATERIAL_INSIDE != 0;
+            assert_eq!(passes.contains(&case), inside, "{name}: lets_light_pass");
 
             let info = ObjectInfo { material, ior: [1.5; 3], ..ObjectInfo::zeroed() };
             let objects = [info];

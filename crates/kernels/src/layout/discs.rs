@@ -10,7 +10,7 @@ stage! {
         /// Pixels that a screen tile has along each side.
         DISC_TILE = 8;
     }
-    bindings from 49 {
+    bindings after [tree] {
         /// Counts, then offsets, by leaf.
         DISC_OFFSETS: u32 as disc_offset;
         /// Screen tile and rank of each pair, front to back within a tile once they are sorted.

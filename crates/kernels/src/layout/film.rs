@@ -7,7 +7,7 @@ stage! {
     "film" needs []
     constants {
     }
-    bindings from 104 {
+    bindings after [volume] {
         /// By pixel of the tile.
         FILM: FilmPixel;
         /// Of all samples so far.

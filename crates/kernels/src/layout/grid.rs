@@ -17,7 +17,7 @@ stage! {
         /// Grids of a scene, at most.
         MOST_LEVELS = 16;
     }
-    bindings from 20 {
+    bindings after [search] {
         /// The grid that is built.
         GRID_INFO: GridInfo;
         /// Slots by ordinal.

@@ -204,7 +204,7 @@ pub fn binding(number: u32) -> Option<&'static Binding> {
     bindings().find(|binding| binding.number == number)
 }
 
-/// States a stage: `needs` others, `constants`, `bindings` from a number on (with a struct or number as the element,
+/// States a stage: `needs` others, `constants`, `bindings` whose numbers follow those of the stage before (with a struct or number as the element,
 /// `by 4` where single numbers are read four at a time, `as` what the functions that read it are named after, `image` where it
 /// is none of a buffer), `structs`.
 macro_rules! stage {
@@ -212,7 +212,7 @@ macro_rules! stage {
         $(#![doc = $about:literal])*
         $stage:literal needs [$($needs:literal),*]
         constants { $($(#[doc = $cdoc:literal])* $constant:ident = $value:expr;)* }
-        bindings from $first:literal {
+        bindings after [$($previous:ident)?] {
             $($(#[doc = $bdoc:literal])* $binding:ident: $element:tt $(by $texel:literal)? $(as $reader:ident)?;)*
         }
         structs {
@@ -225,8 +225,13 @@ macro_rules! stage {
 
         #[allow(non_camel_case_types, clippy::upper_case_acronyms, reason = "names of constants, to count them")]
         #[allow(dead_code, reason = "a stage may have no binding")]
-        enum Place { $($binding,)* }
-        $($(#[doc = $bdoc])* pub const $binding: u32 = $first + Place::$binding as u32;)*
+        enum Place { $($binding,)* End }
+        #[allow(dead_code, reason = "a stage may have no binding")]
+        const FIRST: u32 = crate::layout::first(&[$(super::$previous::END,)? 0]);
+        #[allow(dead_code, reason = "after the last stage there is none")]
+        /// One more than the last of its bindings, which the next stage begins with.
+        pub(super) const END: u32 = FIRST + Place::End as u32;
+        $($(#[doc = $bdoc])* pub const $binding: u32 = FIRST + Place::$binding as u32;)*
 
         $(
             $(#[doc = $sdoc])*

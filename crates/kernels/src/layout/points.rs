@@ -27,7 +27,7 @@ stage! {
         /// No fit: the point is drawn as a sphere.
         FIT_SPHERE = 5;
     }
-    bindings from 0 {
+    bindings after [] {
         /// Every point, by slot.
         POINTS: Point as point;
         /// Neighbours of the batch's points, by slot.

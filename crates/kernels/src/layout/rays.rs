@@ -40,7 +40,7 @@ stage! {
         /// For the place on a light: one a light from here on.
         SAMPLE_LIGHT = 4096;
     }
-    bindings from 54 {
+    bindings after [discs] {
         /// The ray state read: a queue, or the first of four images.
         STATE_IN: StateRay as state;
         /// The second.

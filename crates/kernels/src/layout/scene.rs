@@ -69,7 +69,7 @@ stage! {
         /// A transfer function is steep, and steps may be divided.
         SCENE_STEEP = 1_073_741_824;
     }
-    bindings from 110 {
+    bindings after [film] {
     }
     structs {
     }

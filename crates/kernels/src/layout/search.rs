@@ -15,7 +15,7 @@ stage! {
         /// Boxes that the search for one list of leaves may look at.
         LEAF_STEPS = 32_768;
     }
-    bindings from 12 {
+    bindings after [points] {
         /// Boxes of an object, level over level.
         SEARCH_NODES: SearchNode as search_node;
         /// Of each point of the batch, d² that holds k others.

@@ -9,7 +9,7 @@ stage! {
     "tree" needs ["search", "rays"]
     constants {
     }
-    bindings from 46 {
+    bindings after [grid] {
         /// The boxes around the nodes.
         TREE_BOXES: SearchNode;
         /// The nodes, four times four words each (tree.glsl).

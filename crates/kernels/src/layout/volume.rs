@@ -44,7 +44,7 @@ stage! {
         /// Parts of a step that is divided.
         MARCH_PARTS = 64;
     }
-    bindings from 90 {
+    bindings after [wave] {
         /// The volumes of the scene.
         VOLUMES: VolumeInfo;
         /// Of all volumes.

@@ -51,7 +51,7 @@ stage! {
         /// A light at a point.
         LIGHT_POINT = 1;
     }
-    bindings from 70 {
+    bindings after [rays] {
         /// The path of every ray from the camera, but for its pixel.
         CAMERA_PATH: Path;
         /// Of the rays of the wave, by ray.

@@ -11,7 +11,7 @@ use kernels::spirv::{self, Lists, Module, Neighbors};
 const FEW: u32 = 16;
 
 /// What the pass works on.
-pub(crate) struct FitPolynomialsIo<'a> {
+pub(crate) struct FitBuffers<'a> {
     pub points: &'a Buffer,
     pub neighbors: &'a Buffer,
     pub polynomials: &'a Buffer,
@@ -35,7 +35,7 @@ pub(crate) fn fit_module(lists: Lists, neighbors: u32) -> &'static Module {
 pub(crate) fn record_fits(
     rec: &mut Recorder,
     lists: Lists,
-    io: FitPolynomialsIo<'_>,
+    io: FitBuffers<'_>,
     params: &FitParams,
 ) {
     // Of a large scene, the buffers by slot are longer than a binding.

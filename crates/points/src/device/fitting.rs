@@ -1,9 +1,9 @@
 //! All fits of a scene, batch after batch: neighbours, and then the polynomials over them.
 
 use super::BuildError;
-use super::fit::{FitPolynomialsIo, fit_module, record_fits};
+use super::fit::{FitBuffers, fit_module, record_fits};
 use super::search::{BATCH, Search, SearchSpace};
-use super::shapes::{ShapesIo, write_shapes};
+use super::shapes::{ShapeBuffers, write_shapes};
 use super::smooth::SmoothSizes;
 use super::work::Work;
 use crate::{Cloud, NeighborSearch, Rims, Shapes, SlotRange, Watch};
@@ -62,7 +62,7 @@ pub(crate) fn fit_all(
     for fit in shapes.iter().filter_map(Shapes::plane_fit) {
         fitting.object(cloud, &fit, polynomials, work, watch)?;
     }
-    let io = ShapesIo { points: &fitting.points, polynomials, outcomes: &fitting.outcomes };
+    let io = ShapeBuffers { points: &fitting.points, polynomials, outcomes: &fitting.outcomes };
     write_shapes(device, work, &io, shapes)?;
     let mut outcomes = vec![FitOutcome { trust: 0.0, kind: 0, feature_size: 0.0 }; count as usize];
     fitting.outcomes.read(0, &mut outcomes)?;
@@ -179,7 +179,7 @@ impl Fitting {
                     bound_from: first_slot - first_slot % BOUND_FROM,
                     ..*fit
                 };
-                let io = FitPolynomialsIo {
+                let io = FitBuffers {
                     points: &self.points,
                     neighbors: &space.lists,
                     polynomials,

@@ -22,7 +22,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 /// What the build of one grid works on.
-pub(crate) struct GridBuildIo<'a> {
+pub(crate) struct GridToBuild<'a> {
     pub level: GridLevel,
     /// Of it alone.
     pub grid_info: Buffer,
@@ -110,7 +110,7 @@ impl GridBuild {
     }
 
     /// Lists the points whose trust ball meets each cell of each grid, in the order of `order` (slots by ordinal).
-    pub fn run(&self, rec: &mut Work, levels: &[GridBuildIo<'_>]) -> Result<GridLists, GpuError> {
+    pub fn run(&self, rec: &mut Work, levels: &[GridToBuild<'_>]) -> Result<GridLists, GpuError> {
         let device = &self.device;
         let last = levels.last().map_or(0, |io| io.level.first_cell + io.level.grid.cell_count());
         let bytes = u64::from(last) * 8;
@@ -164,7 +164,7 @@ impl GridBuild {
     pub fn list_points(
         &self,
         rec: &mut Work,
-        levels: &[GridBuildIo<'_>],
+        levels: &[GridToBuild<'_>],
     ) -> Result<Option<PointCells>, GpuError> {
         let device = &self.device;
         let counted = self.counted(rec, levels, 0.0)?;
@@ -210,7 +210,7 @@ impl GridBuild {
     fn counted(
         &self,
         rec: &mut Work,
-        levels: &[GridBuildIo<'_>],
+        levels: &[GridToBuild<'_>],
         ball_scale: f32,
     ) -> Result<Vec<(Counting, Slab)>, GpuError> {
         let mut counted = Vec::new();
@@ -223,7 +223,7 @@ impl GridBuild {
         Ok(counted)
     }
 
-    fn counting(&self, rec: &mut Work, io: &GridBuildIo<'_>) -> Result<Counting, GpuError> {
+    fn counting(&self, rec: &mut Work, io: &GridToBuild<'_>) -> Result<Counting, GpuError> {
         let device = &self.device;
         let points = io.order.len() as u32;
         let bytes = (u64::from(points) + 1) * 4;
@@ -253,7 +253,7 @@ impl GridBuild {
     fn count(
         &self,
         rec: &mut Work,
-        io: &GridBuildIo<'_>,
+        io: &GridToBuild<'_>,
         counting: &Counting,
         [first_layer, end_layer]: [u32; 2],
         ball_scale: f32,
@@ -292,7 +292,7 @@ impl GridBuild {
     fn sorted_pairs(
         &self,
         rec: &mut Work,
-        io: &GridBuildIo<'_>,
+        io: &GridToBuild<'_>,
         counting: &Counting,
         slab: &Slab,
         ball_scale: f32,
@@ -331,7 +331,7 @@ impl GridBuild {
     fn record_ranges(
         &self,
         rec: &mut Work,
-        io: &GridBuildIo<'_>,
+        io: &GridToBuild<'_>,
         pairs: &Pairs,
         slab: &Slab,
         first_pair: u32,
@@ -365,7 +365,7 @@ impl Slab {
         starts.rev().map(|start| [start, end.min(start + layers)]).collect()
     }
 
-    fn params(&self, io: &GridBuildIo<'_>, ball_scale: f32) -> GridParams {
+    fn params(&self, io: &GridToBuild<'_>, ball_scale: f32) -> GridParams {
         GridParams {
             point_count: io.order.len() as u32,
             pair_count: self.pairs,

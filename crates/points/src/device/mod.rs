@@ -25,7 +25,7 @@ pub use tree::Tree;
 use crate::{Cloud, Grids, Shapes, Watch, plan_grids};
 use fitting::{Fitted, fit_all, lists_of};
 use gpu::{Buffer, Device, GpuError};
-use grid_build::{GridBuild, GridBuildIo, LISTED_POINT_BYTES, slab_pairs};
+use grid_build::{GridBuild, GridToBuild, LISTED_POINT_BYTES, slab_pairs};
 use kernels::layout::{FitOutcome, FitParams, GridLevel, LINE_ROW, Point, Polynomial};
 use kernels::spirv::{Lists, Module};
 use std::sync::Arc;
@@ -216,8 +216,8 @@ impl Surfaces {
         watch.done(1);
         let build = GridBuild::new(device, lists, slab_pairs);
         let widest = outcomes.iter().map(|outcome| outcome.trust).fold(0.0, f32::max);
-        let io = |(at, level): (usize, &GridLevel)| -> Result<GridBuildIo<'_>, GpuError> {
-            Ok(GridBuildIo {
+        let io = |(at, level): (usize, &GridLevel)| -> Result<GridToBuild<'_>, GpuError> {
+            Ok(GridToBuild {
                 level: *level,
                 grid_info: Buffer::from_slice(device, "grid info", &[level.grid])?,
                 polynomials: &polynomials,

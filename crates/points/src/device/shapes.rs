@@ -16,7 +16,7 @@ const BATCH: u32 = 1 << 17;
 const BOUND_FROM: u32 = 64;
 
 /// What the passes work on, by slot.
-pub(crate) struct ShapesIo<'a> {
+pub(crate) struct ShapeBuffers<'a> {
     pub points: &'a Buffer,
     pub polynomials: &'a Buffer,
     pub outcomes: &'a Buffer,
@@ -26,7 +26,7 @@ pub(crate) struct ShapesIo<'a> {
 pub(crate) fn write_shapes(
     device: &Arc<Device>,
     rec: &mut Work,
-    io: &ShapesIo<'_>,
+    io: &ShapeBuffers<'_>,
     all: &[Shapes],
 ) -> Result<(), GpuError> {
     for kind in [ShapeKind::Sphere, ShapeKind::Disc] {
@@ -55,7 +55,7 @@ fn module_of(kind: ShapeKind) -> &'static Module {
 fn write_batches(
     device: &Arc<Device>,
     rec: &mut Work,
-    io: &ShapesIo<'_>,
+    io: &ShapeBuffers<'_>,
     shapes: &Shapes,
 ) -> Result<(), GpuError> {
     for first in (0..shapes.count).step_by(BATCH as usize) {
