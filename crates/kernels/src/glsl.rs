@@ -417,7 +417,7 @@ mod tests {
         }
     }
 
-    /// Elements that are read as texels fill them, and single numbers alone are read four at a time.
+    /// Elements that are read as texels fill them, and only single numbers are read four at a time.
     #[test]
     fn readers_take_whole_texels() {
         for binding in bindings().filter(|binding| binding.reader.is_some()) {

@@ -1,4 +1,4 @@
-//! Points: which of a file are read, once for all objects that have it, and what is told of them.
+//! Points: which of a file are read, once for all objects that have it, and what is reported about them.
 
 use super::{Input, leave_out_folder};
 use crate::errors::Failure;

@@ -1,4 +1,4 @@
-//! What is told of degrees and metres.
+//! What is reported about degrees and metres.
 
 use super::Input;
 use crate::progress::Progress;

@@ -17,7 +17,7 @@ pub struct SceneValues {
 }
 
 impl SceneValues {
-    /// `--set` alone.
+    /// Only `--set`.
     pub fn set(set: &[String]) -> Self {
         Self { entries: set.iter().map(|entry| (entry.clone(), None)).collect(), root: None }
     }
@@ -92,7 +92,7 @@ impl SceneValues {
         self.entries.iter().map(|entry| entry.0.clone()).collect()
     }
 
-    /// The scene knows of `--set` alone; the user is told of what was typed.
+    /// The scene knows only `--set`; messages name what was typed.
     pub(super) fn name_options(&self, mut failure: Failure) -> Failure {
         for (value, option) in &self.entries {
             let Some(option) = option else { continue };
