@@ -10,7 +10,7 @@ struct FilmPixel { // 80 bytes
     vec4 position_depth;             //  16 First surface, centred scene space; distance along the viewing axis, or +inf.
     vec4 normal_object;              //  32 Unit normal facing the viewer; index of the object, or −1.
     uvec4 counts;                    //  48 Points tested, cells crossed, slot of the hit or NONE, iterations of its refinement.
-    vec3 alpha;                      //  64 1 less what each channel lets through of the background, by glass and volumes alone.
+    vec3 alpha;                      //  64 1 less what each channel lets through of the background, by nothing but glass and volumes.
     float along;                     //  76 Of volumes on the camera ray's way, as in March.
 };
 

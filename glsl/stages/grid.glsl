@@ -6,7 +6,7 @@
 
 #define RUN_LENGTH 256 // Entries that one invocation of the scan and sort kernels walks
 #define DIGIT_BITS 8 // Bits of a key sorted in one round
-#define MOST_SKIPPED 4 // Cells from an empty one to the next that may not be: no greater distance is told apart
+#define MOST_SKIPPED 4 // The greatest distance, in cells, from an empty cell to the next occupied one that is recorded; greater ones count as this
 #define SCAN_LIMIT 0x7fffffffu // Where sums stop instead of wrapping
 #define MOST_LEVELS 16 // Grids of a scene, at most
 
@@ -44,7 +44,7 @@ ListedPoint listed_point_from(usamplerBuffer texels, int first) {
 struct GridParams { // 28 bytes
     uint point_count;                //   0 Points of the scene.
     uint pair_count;                 //   4 Pairs of a cell of the slab and a point near it.
-    float ball_scale;                //   8 Radius listed over trust radius; 0: each point in its own cell alone.
+    float ball_scale;                //   8 Radius listed over trust radius; 0: each point only in its own cell.
     uint first_layer;                //  12 First layer of cells along z of the slab.
     uint end_layer;                  //  16 Past the last.
     uint first_pair;                 //  20 Pairs of the slabs before; of order_balls, points of the parts before.

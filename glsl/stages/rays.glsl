@@ -6,7 +6,7 @@
 
 #define RAY_STARTS 0xfffffffeu // A ray's cell before its structure has begun with it (structure.glsl)
 #define STATE_ROW 1024 // Texels a row of the ray state's images
-#define PASSED_NEAR 0x80000000u // Beside an object in TraceParams.passed: its surface is not there near the ray's start alone
+#define PASSED_NEAR 0x80000000u // Beside an object in TraceParams.passed: its surface is left out only near the ray's start
 #define HIT_NONE 0 // A pixel that hit nothing
 #define HIT_ACCEPTED 1 // A hit that stands
 #define HIT_PENDING 2 // A hit whose refinement is under way
@@ -30,7 +30,7 @@ struct CameraParams { // 96 bytes
     vec3 up;                         //  32 Unit vector upwards.
     float half_height;               //  44 Half the full image's rows.
     vec3 forward;                    //  48 Unit vector of the viewing axis.
-    uint sample_index;               //  60 Which sample of its pixel; NONE where there is one alone, through the pixel's centre and the lens's.
+    uint sample_index;               //  60 Which sample of its pixel; NONE where there is only one, through the pixel's centre and the lens's.
     uvec2 tile_origin;               //  64 The tile's first pixel in the full image.
     uvec2 tile_size;                 //  72 Columns and rows of the tile.
     uint projection;                 //  80 PERSPECTIVE or ORTHOGRAPHIC.

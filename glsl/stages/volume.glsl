@@ -34,7 +34,7 @@ struct VolumeInfo { // 96 bytes
     float square_radius;             //  48 Of a point's reach.
     float inverse_width;             //  52 1 / 2ρ.
     uint object;                     //  56 Index of the object in the scene.
-    uint bounded;                    //  60 1: it counts inside the object's surface alone.
+    uint bounded;                    //  60 1: it counts only inside the object's surface.
     vec3 high;                       //  64 Highest corner of the box, whose lowest is the grid's.
     uint mode;                       //  76 What a ray shows: one of VOLUME_EMISSION and so on.
     float iso;                       //  80 Scalar on an isosurface.

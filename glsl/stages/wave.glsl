@@ -18,7 +18,7 @@
 #define PATH_REFLECTED 8 // Bit beside them: the path was reflected somewhere
 #define PATH_ADDS 16 // Bit: surfaces on its way were lit, so that what it brings is added to what the pixel has
 #define TRANSPARENT_CAMERA 1 // WaveParams.transparent: camera rays leave the background out
-#define TRANSPARENT_GLASS 2 // WaveParams.transparent: and so does all that was refracted alone
+#define TRANSPARENT_GLASS 2 // WaveParams.transparent: and so do rays that were only refracted
 #define WAVE_FROM_CAMERA 1 // WaveParams.flags: rays come from the camera
 #define WAVE_SHARES_PATH 2 // WaveParams.flags: all rays have the camera's path, but for the pixel
 #define WAVE_VALUES 4 // WaveParams.flags: of paths that have shown no scalar of a volume yet, the next part of the way does
@@ -63,7 +63,7 @@ struct WaveParams { // 80 bytes
     uint seed;                       //  60 Of everything random.
     uint light;                      //  64 The light that shadow rays go to now.
     uint light_count;                //  68 Lights of the scene.
-    uint sample_index;               //  72 Which sample of each pixel; NONE where there is one alone, and lights have no extent.
+    uint sample_index;               //  72 Which sample of each pixel; NONE where there is only one, and lights have no extent.
     uint transparent;                //  76 What leaves the background out: one of TRANSPARENT_*, or 0 for nothing.
 };
 

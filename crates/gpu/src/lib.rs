@@ -1,6 +1,6 @@
 //! Pointillist's Vulkan layer: devices, buffers, images, kernels and the recorder.
 //!
-//! All `unsafe` of the project is in this crate, behind an interface that has none but for [`Kernel::of_words`]. Four rules
+//! All `unsafe` of the project is in this crate, behind an interface in which only [`Kernel::of_words`] is unsafe. Four rules
 //! make its arguments short:
 //!
 //! * every object holds an `Arc` of its [`Device`], and a device an `Arc` of its [`Instance`], so

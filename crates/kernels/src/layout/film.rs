@@ -24,7 +24,7 @@ stage! {
             normal_object: [f32; 4],
             /// Points tested, cells crossed, slot of the hit or `NONE`, iterations of its refinement.
             counts: [u32; 4],
-            /// 1 less what each channel lets through of the background, by glass and volumes alone.
+            /// 1 less what each channel lets through of the background, by nothing but glass and volumes.
             alpha: [f32; 3],
             /// Of volumes on the camera ray's way, as in [`March`].
             along: f32,

@@ -10,7 +10,7 @@ stage! {
         RUN_LENGTH = 256;
         /// Bits of a key sorted in one round.
         DIGIT_BITS = 8;
-        /// Cells from an empty one to the next that may not be: no greater distance is told apart.
+        /// The greatest distance, in cells, from an empty cell to the next occupied one that is recorded; greater ones count as this.
         MOST_SKIPPED = 4;
         /// Where sums stop instead of wrapping.
         SCAN_LIMIT = 0x7fff_ffff;
@@ -107,7 +107,7 @@ stage! {
             point_count: u32,
             /// Pairs of a cell of the slab and a point near it.
             pair_count: u32,
-            /// Radius listed over trust radius; 0: each point in its own cell alone.
+            /// Radius listed over trust radius; 0: each point only in its own cell.
             ball_scale: f32,
             /// First layer of cells along z of the slab.
             first_layer: u32,

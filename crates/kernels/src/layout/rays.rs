@@ -10,7 +10,7 @@ stage! {
         RAY_STARTS = 0xffff_fffe;
         /// Texels a row of the ray state's images.
         STATE_ROW = 1024;
-        /// Beside an object in [`TraceParams::passed`]: its surface is not there near the ray's start alone.
+        /// Beside an object in [`TraceParams::passed`]: its surface is left out only near the ray's start.
         PASSED_NEAR = 0x8000_0000;
         /// A pixel that hit nothing.
         HIT_NONE = 0;
@@ -89,7 +89,7 @@ stage! {
             half_height: f32,
             /// Unit vector of the viewing axis.
             forward: [f32; 3],
-            /// Which sample of its pixel; `NONE` where there is one alone, through the pixel's centre and the
+            /// Which sample of its pixel; `NONE` where there is only one, through the pixel's centre and the
             /// lens's.
             sample_index: u32,
             /// The tile's first pixel in the full image.

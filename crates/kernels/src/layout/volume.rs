@@ -85,7 +85,7 @@ stage! {
             inverse_width: f32,
             /// Index of the object in the scene.
             object: u32,
-            /// 1: it counts inside the object's surface alone.
+            /// 1: it counts only inside the object's surface.
             bounded: u32,
             /// Highest corner of the box, whose lowest is the grid's.
             high: [f32; 3],

@@ -32,7 +32,7 @@ stage! {
         PATH_ADDS = 16;
         /// [`WaveParams::transparent`]: camera rays leave the background out.
         TRANSPARENT_CAMERA = 1;
-        /// [`WaveParams::transparent`]: and so does all that was refracted alone.
+        /// [`WaveParams::transparent`]: and so do rays that were only refracted.
         TRANSPARENT_GLASS = 2;
         /// [`WaveParams::flags`]: rays come from the camera.
         WAVE_FROM_CAMERA = 1;
@@ -132,7 +132,7 @@ stage! {
             light: u32,
             /// Lights of the scene.
             light_count: u32,
-            /// Which sample of each pixel; `NONE` where there is one alone, and lights have no extent.
+            /// Which sample of each pixel; `NONE` where there is only one, and lights have no extent.
             sample_index: u32,
             /// What leaves the background out: one of `TRANSPARENT_*`, or 0 for nothing.
             transparent: u32,
