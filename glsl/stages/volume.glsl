@@ -37,7 +37,7 @@ struct VolumeInfo { // 96 bytes
     uint bounded;                    //  60 1: it counts only inside the object's surface.
     vec3 high;                       //  64 Highest corner of the box, whose lowest is the grid's.
     uint mode;                       //  76 What a ray shows: one of VOLUME_EMISSION and so on.
-    float iso;                       //  80 Scalar on an isosurface.
+    float iso;                       //  80 Scalar on an isosurface; of other modes, the mean cosine of the angle that light is scattered by.
     uint slot;                       //  84 Of the polynomial that stands for an isosurface, behind those of all points; of other modes, 1 where anything has an emission.
     uint refracts;                   //  88 1: an isosurface of glass, which rays are inside or outside.
     uint shading;                    //  92 What light does in it: one of VOLUME_EMITS and so on.

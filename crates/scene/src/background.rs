@@ -1,12 +1,14 @@
 //! `[background]`: what rays that hit nothing see; and images that a scene names.
 
-use crate::document::Origin;
+use crate::document::{Node, Origin};
+use crate::error::Problem;
 use crate::keys::Absent::{Value, Words};
 use crate::keys::{Fault, Kind, RADIANCE, Table, key, numbers};
 use crate::read::Reader;
+use crate::{Integrator, Scene};
 use std::path::{Path, PathBuf};
 
-/// What rays that hit nothing see. It lights nothing else.
+/// What rays that hit nothing see.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Background {
     /// Radiance, each 0 to 1e15.
@@ -15,6 +17,8 @@ pub struct Background {
     pub environment: Option<ImageFile>,
     /// How the environment is turned about the fixed x, y, z axes in that order, in degrees, each -1e6 to 1e6.
     pub rotate: [f64; 3],
+    /// Whether it lights the scene, which an integrator other than `direct` is needed for; `None`: wherever it can.
+    pub lights: Option<bool>,
 }
 
 /// An image that the scene names.
@@ -28,7 +32,7 @@ pub struct ImageFile {
 
 pub(crate) static BACKGROUND: Table = Table {
     header: "[background]",
-    doc: "What rays that hit nothing see. It lights nothing else.",
+    doc: "What rays that hit nothing see. With `render.integrator` \"sky\" or \"path\" it lights the scene.",
     whole: Some(background_is_one),
     keys: &[
         key("color", RADIANCE, Value("[0.0, 0.0, 0.0]"), "One radiance in every direction."),
@@ -49,6 +53,12 @@ pub(crate) static BACKGROUND: Table = Table {
             "Turns the environment about the world's fixed axes x, then y, then z, right-handed, as \
              `transform.rotate` turns an object; an error without one.",
         ),
+        key(
+            "lights",
+            Kind::Bool,
+            Words("true with `render.integrator` \"sky\" or \"path\"", "false"),
+            "Whether the background lights the scene. True is an error where `render.integrator` is \"direct\".",
+        ),
     ],
 };
 
@@ -58,6 +68,7 @@ impl Background {
             color: table.vector("color"),
             environment: ImageFile::read(table, "environment", folder),
             rotate: table.vector("rotate"),
+            lights: table.written("lights").map(|_| table.flag("lights")),
         }
     }
 }
@@ -69,6 +80,30 @@ impl ImageFile {
         let as_written = table.text(name);
         Some(Self { path: folder.join(&as_written), as_written })
     }
+}
+
+impl Scene {
+    /// Whether the background lights the scene.
+    #[must_use]
+    pub fn background_lights(&self) -> bool {
+        self.render.integrator != Integrator::Direct && self.background.lights.unwrap_or(true)
+    }
+}
+
+/// What is wrong with a background that is to light a scene in which light comes from lights only.
+pub(crate) fn problem(document: &Node, scene: &Scene) -> Option<Problem> {
+    let asked = scene.background.lights == Some(true);
+    if !asked || scene.render.integrator != Integrator::Direct {
+        return None;
+    }
+    let node = document.get("background").and_then(|table| table.get("lights"));
+    Some(Problem {
+        origin: node.map_or(document.origin, |node| node.origin),
+        path: "background.lights".into(),
+        message: "found true, expected false where render.integrator is \"direct\": light then comes from the lights \
+                  only; set integrator = \"sky\" or \"path\", or remove the key"
+            .into(),
+    })
 }
 
 impl Default for Background {

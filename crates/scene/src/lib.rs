@@ -53,7 +53,9 @@ pub use light::Light;
 pub use material::{Albedo, Material, MaterialKind, TextureAxis};
 pub use models::MODELS_VARIABLE;
 pub use object::{Object, PointColumn, PointColumns, Units};
-pub use render_settings::{Fresnel, GridResolution, Primary, RayLoop, RenderSettings, Secondary};
+pub use render_settings::{
+    Fresnel, GridResolution, Integrator, Primary, RayLoop, RenderSettings, Secondary,
+};
 pub use scene::{Camera, Projection, Scene, Up};
 pub use schema::{json_schema, suite_json_schema};
 pub use suite::{Shape, SimulatedScan, Suite, SuiteRow};

@@ -215,7 +215,9 @@ fn checked(
         return Err(SceneError::problems(problems, source));
     }
     let scene = scene(&Reader::new(&SCENE, Some(document)), folder);
-    match crate::inside::problem(document, &scene) {
+    let problem = crate::inside::problem(document, &scene)
+        .or_else(|| crate::background::problem(document, &scene));
+    match problem {
         Some(problem) => Err(SceneError::problems(vec![problem], source)),
         None => Ok((scene, missing)),
     }

@@ -1,15 +1,19 @@
 //! `[render]`: how rays are followed.
 
 use crate::keys::Absent::{Value, Words};
-use crate::keys::{Kind, Table, count, key};
+use crate::keys::{Kind, LARGE, SHORT, Table, count, key, numbers};
 use crate::read::{Reader, to_number};
 use std::fmt::{self, Write};
 
 /// How rays are followed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RenderSettings {
     /// Surface interactions after the primary hit, 0 to 1024.
     pub max_bounces: u32,
+    /// Where light comes from.
+    pub integrator: Integrator,
+    /// The most radiance that a sample of light takes from one place that is not seen at once, more than 0 to 1e15.
+    pub clamp: Option<f64>,
     /// What glass does with a ray that it both reflects and refracts.
     pub fresnel: Fresnel,
     /// Cells a ray may cross in one pass; 0 lets the device decide. Changes no pixel.
@@ -24,6 +28,17 @@ pub struct RenderSettings {
     pub primary: Primary,
     /// How all other rays find theirs. Changes no pixel.
     pub secondary: Secondary,
+}
+
+/// Where light comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Integrator {
+    /// From the lights.
+    Direct,
+    /// From the lights, and at every diffuse hit from the background.
+    Sky,
+    /// From the lights, the background, and every surface and volume that these light.
+    Path,
 }
 
 /// How many cells a grid has along its longest axis. Changes no pixel.
@@ -102,7 +117,23 @@ pub(crate) static RENDER: Table = Table {
             "max_bounces",
             count(0, 1024, "surface interactions"),
             Value("8"),
-            "Interactions after the primary hit; a ray that has spent them takes the background.",
+            "Interactions after the primary hit; a ray that has spent them takes the background. With `integrator = \
+             \"path\"`, light that has come over more surfaces, or been scattered more often in volumes, does not count.",
+        ),
+        key(
+            "integrator",
+            Kind::Choice(&["direct", "sky", "path"]),
+            Value("\"direct\""),
+            "Where light comes from: `direct`, from the lights of the scene; `sky`, at every diffuse hit from the \
+             background too, wherever nothing is in its way; `path`, also from surface to surface, through glass and \
+             volumes, up to `max_bounces`. `sky` and `path` draw directions at random: they want `image.samples`.",
+        ),
+        key(
+            "clamp",
+            Kind::Number(numbers(SHORT, LARGE, "radiance")),
+            Words("none", "10.0"),
+            "With `integrator = \"path\"`: the most that one sample takes of light which has come over a diffuse \
+             surface or a volume before the last. It removes bright specks, and some light.",
         ),
         key(
             "fresnel",
@@ -166,6 +197,12 @@ impl RenderSettings {
     pub(crate) fn read(table: &Reader<'_>) -> Self {
         Self {
             max_bounces: table.count("max_bounces"),
+            integrator: match table.text("integrator").as_str() {
+                "sky" => Integrator::Sky,
+                "path" => Integrator::Path,
+                _ => Integrator::Direct,
+            },
+            clamp: table.written("clamp").map(|_| table.number("clamp")),
             fresnel: match table.text("fresnel").as_str() {
                 "sample" => Fresnel::Sample,
                 _ => Fresnel::Transmit,
@@ -208,7 +245,16 @@ pub(crate) fn write_render(out: &mut String, render: &RenderSettings) -> fmt::Re
         Fresnel::Sample => "sample",
     };
     writeln!(out, "[render]")?;
+    let integrator = match render.integrator {
+        Integrator::Direct => "direct",
+        Integrator::Sky => "sky",
+        Integrator::Path => "path",
+    };
     writeln!(out, "max_bounces = {}", render.max_bounces)?;
+    writeln!(out, "integrator = \"{integrator}\"")?;
+    if let Some(clamp) = render.clamp {
+        writeln!(out, "clamp = {clamp:?}")?;
+    }
     writeln!(out, "fresnel = \"{fresnel}\"")?;
     writeln!(out, "seed = {}", render.seed)?;
     match render.grid_resolution {

@@ -41,6 +41,9 @@ impl Scene {
             }
             None => writeln!(out, "color = {:?}", self.background.color)?,
         }
+        if let Some(lights) = self.background.lights {
+            writeln!(out, "lights = {lights}")?;
+        }
         for light in &self.lights {
             write_light(out, light)?;
         }

@@ -33,6 +33,8 @@ transparent = true
 
 [render]
 max_bounces = 3
+integrator = "path"
+clamp = 12.5
 fresnel = "transmit"
 cells_per_pass = 4
 loop = "images"
@@ -43,6 +45,7 @@ secondary = "tree"
 
 [background]
 color = [0.1, 0.2, 1e-7]
+lights = false
 
 [[lights]]
 kind = "directional"
@@ -130,6 +133,8 @@ radius = 0.05
 smoothing = 0.0006
 step = 0.01
 boundary = "skin"
+shading = "scatter"
+anisotropy = 0.5
 transfer = [
   { value = 0.0, color = [0.0, 0.0, 1.0], extinction = 0.0 },
   { value = 1.0, color = [1.0, 0.3, 0.0], extinction = 8.0 },

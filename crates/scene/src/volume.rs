@@ -41,14 +41,17 @@ pub struct Volume {
 }
 
 /// What the light of the scene does in a volume.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum VolumeShading {
     /// Nothing: colours are emitted.
     None,
     /// It is scattered by Lambert's law, as by a surface across the scalar's gradient.
     Gradient,
-    /// It is scattered evenly to all sides.
-    Scatter,
+    /// It is scattered to all sides.
+    Scatter {
+        /// g of the phase function of Henyey and Greenstein, -0.99 to 0.99.
+        anisotropy: f64,
+    },
 }
 
 /// What a ray through a volume shows.
@@ -213,7 +216,7 @@ impl Volume {
             },
             shading: match table.text("shading").as_str() {
                 "gradient" => VolumeShading::Gradient,
-                "scatter" => VolumeShading::Scatter,
+                "scatter" => VolumeShading::Scatter { anisotropy: table.number("anisotropy") },
                 _ => VolumeShading::None,
             },
         }
@@ -277,9 +280,12 @@ pub(crate) fn write_volume(out: &mut String, volume: &Volume) -> fmt::Result {
         let shading = match volume.shading {
             VolumeShading::None => "none",
             VolumeShading::Gradient => "gradient",
-            VolumeShading::Scatter => "scatter",
+            VolumeShading::Scatter { .. } => "scatter",
         };
         writeln!(out, "shading = \"{shading}\"")?;
+        if let VolumeShading::Scatter { anisotropy } = volume.shading {
+            writeln!(out, "anisotropy = {anisotropy:?}")?;
+        }
     }
     writeln!(out, "boundary = {}", quoted(boundary))?;
     let stops = match &volume.transfer {

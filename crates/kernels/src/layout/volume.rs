@@ -91,7 +91,7 @@ stage! {
             high: [f32; 3],
             /// What a ray shows: one of `VOLUME_EMISSION` and so on.
             mode: u32,
-            /// Scalar on an isosurface.
+            /// Scalar on an isosurface; of other modes, the mean cosine of the angle that light is scattered by.
             iso: f32,
             /// Of the polynomial that stands for an isosurface, behind those of all points; of other modes, 1 where anything has an
             /// emission.

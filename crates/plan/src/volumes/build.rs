@@ -71,7 +71,10 @@ impl Volumes {
             },
             iso: match volume.mode {
                 VolumeMode::Isosurface(iso) => iso as f32,
-                _ => 0.0,
+                _ => match volume.shading {
+                    VolumeShading::Scatter { anisotropy } => anisotropy as f32,
+                    _ => 0.0,
+                },
             },
             slot: u32::from(self.stops[first_stop as usize..].iter().any(has_emission)),
             refracts: u32::from(
@@ -81,7 +84,7 @@ impl Volumes {
             shading: match volume.shading {
                 VolumeShading::None => VOLUME_EMITS,
                 VolumeShading::Gradient => VOLUME_GRADIENT,
-                VolumeShading::Scatter => VOLUME_SCATTERS,
+                VolumeShading::Scatter { .. } => VOLUME_SCATTERS,
             },
         };
         self.list(&info, &points, step);

@@ -28,6 +28,8 @@ fn every_built_key_is_read() {
     assert_eq!(scene.image, image);
     let render = RenderSettings {
         max_bounces: 3,
+        integrator: Integrator::Path,
+        clamp: Some(12.5),
         fresnel: Fresnel::Transmit,
         cells_per_pass: 4,
         ray_loop: RayLoop::Images,
@@ -39,7 +41,12 @@ fn every_built_key_is_read() {
     assert_eq!(scene.render, render);
     assert_eq!(
         scene.background,
-        Background { color: [0.1, 0.2, 1e-7], environment: None, rotate: [0.0; 3] }
+        Background {
+            color: [0.1, 0.2, 1e-7],
+            environment: None,
+            rotate: [0.0; 3],
+            lights: Some(false)
+        }
     );
     let lights = [
         Light::Directional {
@@ -141,7 +148,7 @@ fn every_built_key_is_read() {
         ])),
         scale: Scale::Linear,
         extinction: ExtinctionFactor::Given(1.0),
-        shading: VolumeShading::None,
+        shading: VolumeShading::Scatter { anisotropy: 0.5 },
     };
     assert_eq!(scene.objects[5].volume, Some(volume));
     let map = Transfer::Map {

@@ -1,6 +1,6 @@
 //! What is written of a scene, and the schema.
 
-use super::{FULL, SMALL, orthographic, read, read_with};
+use super::{FULL, SMALL, error_with, orthographic, read, read_with};
 use crate::keys::{Absent, Kind, SCENE, Table};
 use crate::not_built::not_built;
 use crate::*;
@@ -108,4 +108,19 @@ fn schema_states_every_key_and_allows_no_other() {
     assert_eq!(trust["default"], 0.6);
     let ray_loop = &schema["properties"]["render"]["properties"]["loop"];
     assert_eq!(ray_loop["enum"], serde_json::json!(["images", "queue", "auto"]));
+}
+
+/// The background lights wherever the integrator has a use for it, unless the scene says no; where only lights count, it
+/// may not be told to.
+#[test]
+fn the_background_lights_where_it_can() {
+    let with = |set: &[&str]| read_with(SMALL, set).map(|scene| scene.background_lights());
+    assert_eq!(with(&[]).ok(), Some(false));
+    for integrator in ["render.integrator=sky", "render.integrator=path"] {
+        assert_eq!(with(&[integrator]).ok(), Some(true));
+        assert_eq!(with(&[integrator, "background.lights=false"]).ok(), Some(false));
+    }
+    assert_eq!(with(&["background.lights=false"]).ok(), Some(false));
+    let error = error_with(SMALL, &["background.lights=true"]);
+    assert!(error.contains("background.lights: found true, expected false where"), "{error}");
 }

@@ -46,6 +46,11 @@ pub(super) fn volume_says_it_once(volume: &Reader<'_>) -> Result<(), Fault> {
         ("smoothing", volume.text("kernel") != "sph", "other kernels than \"sph\""),
         ("iso", surface, "mode \"isosurface\", but mode is another"),
         ("shading", volume.text("mode") == "emission", "mode \"emission\", but mode is another"),
+        (
+            "anisotropy",
+            volume.text("shading") == "scatter",
+            "shading \"scatter\", but shading is another",
+        ),
     ];
     isosurface_fits(volume)?;
     let extinction = volume.written("extinction").map(|node| &node.value);

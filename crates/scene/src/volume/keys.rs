@@ -86,9 +86,17 @@ pub(crate) static VOLUME: Table = Table {
             "shading",
             Kind::Choice(&["none", "gradient", "scatter"]),
             Value("\"none\""),
-            "Mode `emission` only: colours are emitted, or they scatter the light of up to four lights that \
-             reaches the points, past surfaces and volumes: as a surface across the scalar's gradient would, \
-             or evenly to all sides.",
+            "Mode `emission` only: colours are emitted, or they are the share of light that is scattered, of up to four \
+             lights that reach the points, past surfaces and volumes: as a surface across the scalar's gradient would, \
+             or to all sides by `anisotropy`. With `render.integrator = \"path\"` both scatter as often as it takes, by \
+             `anisotropy`.",
+        ),
+        key(
+            "anisotropy",
+            Kind::Number(numbers(-0.99, 0.99, "")),
+            Value("0.0"),
+            "Shading `scatter` only: the mean cosine of the angle that light is scattered by, g of the phase function of \
+             Henyey and Greenstein: 0 evenly to all sides, towards 1 ahead, towards -1 back.",
         ),
         key(
             "boundary",
