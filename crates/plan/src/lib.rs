@@ -52,6 +52,7 @@ pub use degrees::{MapProjection, in_degrees};
 pub use denoise::Denoising;
 pub use diagnostic::Diagnostic;
 pub use discs::{MAX_DISC_PAIRS, screen_tiles};
+pub use environment::EnvironmentTable;
 pub use error::PlanError;
 pub use extra::Extra;
 pub use first_view::{SensorView, sensor_view};
