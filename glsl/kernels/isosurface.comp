@@ -9,7 +9,9 @@
 // runs    one invocation per ray of the wave; dispatched until none lives
 // twin    crates/reference/src/isosurface.rs
 //
-// With SHADOWS, rays towards a light, which any isosurface blocks.
+// With SHADOWS, rays towards a light, which any isosurface blocks. With PASSING, rays towards a light that goes straight on
+// through glass: instead of `hits`, the normal at the nearest isosurface is written, as the throughput of the shadow ray's
+// path, which is 0 where there is none.
 //
 // The scalar is taken at the midpoints of steps and at the end of the way. Where it passes the number
 // between two samples, a few turns of regula falsi (Illinois) close in on the place, and the scalar's
@@ -32,7 +34,7 @@ layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = LIVE) buffer Live { uint live; };
 layout(std430, binding = PATHS) buffer Paths { Path paths[]; };
 layout(std430, binding = ISO_SEARCHES) buffer Searches { IsoSearch searches[]; };
-#ifdef SHADOWS
+#if defined(SHADOWS) || defined(PASSING)
 layout(std430, binding = LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
 #else
 layout(std430, binding = HITS) buffer Hits { Hit hits[]; };
@@ -109,12 +111,14 @@ void main() {
     Ray ray = load_ray(at);
 #ifdef SHADOWS
     bool begins = ray.hit_slot == NONE && any(greaterThan(light_sums[at].arriving, vec3(0.0)));
+#elif defined(PASSING)
+    bool begins = paths[at].bounces == 0u && any(greaterThan(light_sums[at].arriving, vec3(0.0)));
 #else
     bool begins = paths[at].pixel != NONE;
 #endif
     if (!begins) return;
     vec3 o = ray.origin, d = ray.direction;
-#ifdef SHADOWS
+#if defined(SHADOWS) || defined(PASSING)
     float end = ray.hit_t;
 #else
     float end = ray.hit_slot != NONE ? hits[at].t : NO_HIT;
@@ -253,7 +257,11 @@ void main() {
                 bool steep = square > 0.0;
                 vec3 normal = steep ? gradient / (steep ? sqrt(square) : 1.0) : d;
                 normal = dot3(normal, d) > 0.0 ? -normal : normal;
+#ifdef PASSING
+                paths[at].throughput = normal;
+#else
                 hits[at] = Hit(x, t, normal, HIT_ACCEPTED);
+#endif
                 ray.hit_t = t;
                 ray.hit_slot = volume.slot;
                 end = t;

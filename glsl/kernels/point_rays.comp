@@ -41,6 +41,7 @@ void main() {
     ray.cell = seen ? ray.cell : NONE;
     ray.hit_t = light.distance;
     store_ray(at, ray);
+    paths[at].throughput = vec3(0.0);
     paths[at].pixel = 0u;
     paths[at].channels = NONE;
     paths[at].bounces = 0u;

@@ -72,6 +72,11 @@ void main() {
     vec3 y, normal;
     surface_at(ray.origin, ray.direction, ray.hit_t, p, y, normal);
     vec3 x = p.center_trust.xyz + y;
+    if (scene_has(SCENE_VOLUMES)) {
+        bool on_isosurface = any(notEqual(shadow_paths[at].throughput, vec3(0.0)));
+        x = on_isosurface ? ray.origin + ray.hit_t * ray.direction : x;
+        shadow_paths[at].throughput = vec3(0.0);
+    }
     float left = shadow_paths[at].depth;
     left = left < NO_HIT ? max(left - ray.hit_t, 0.0) : left;
     Ray next = new_ray(x, ray.direction, slot);

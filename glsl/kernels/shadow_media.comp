@@ -24,6 +24,7 @@ void main() {
     if (at >= params.ray_count) return;
     uint ray = lit_ray_at(at);
     Path path = path_of(ray);
+    shadow_paths[at].throughput = vec3(0.0); // no isosurface is met
     shadow_paths[at].pixel = path.pixel;
     shadow_paths[at].channels = NONE;
     shadow_paths[at].bounces = 0u;

@@ -3,8 +3,8 @@
 // reads   the shadow rays' state      ended at their nearest hits, or at the light
 //         shadow_paths, objects, polynomials
 // writes  light_sums       what the media on the way leave of the light, by channel
-//         the shadow rays' state      of rays that a surface between equal media lets through: no hit, so that
-//                          isosurfaces and volumes as far as that surface count
+//         the shadow rays' state      of rays that a surface lets through: no hit, so that isosurfaces and volumes as
+//                          far as that surface count
 //         shadow_paths     that surface; of rays that have arrived, only media that the light is in
 // runs    one invocation per shadow ray
 // twin    crates/reference/src/to_light/shadow_meet.rs
@@ -16,6 +16,7 @@
 #include "stages/rays.glsl"
 #include "stages/wave.glsl"
 #include "math.glsl"
+#include "polynomial.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
@@ -71,9 +72,16 @@ void main() {
     bool passes = false;
     if (found) {
         uint way = way_through_point(ray.hit_slot, ray.origin, ray.direction, ray.hit_t);
-        bvec3 lets = lets_light_pass(polynomial_object_at(ray.hit_slot), media, way);
-        passes = any(lets) && shadow_paths[at].crossings < uint(MOST_CROSSINGS);
-        arriving = mix(vec3(0.0), arriving, lets);
+        vec3 y, normal;
+        surface_at(ray.origin, ray.direction, ray.hit_t, polynomial_at(ray.hit_slot), y, normal);
+        if (scene_has(SCENE_VOLUMES)) {
+            vec3 of_isosurface = shadow_paths[at].throughput; // 0: it is none
+            normal = any(notEqual(of_isosurface, vec3(0.0))) ? of_isosurface : normal;
+        }
+        uint object = polynomial_object_at(ray.hit_slot);
+        vec3 share = light_passed(object, media, way, ray.direction, normal, params.tints != 0u);
+        passes = any(greaterThan(share, vec3(0.0))) && shadow_paths[at].crossings < uint(MOST_CROSSINGS);
+        arriving *= share;
     }
     if (found && !passes) return;
     light_sums[at].arriving = arriving;

@@ -105,11 +105,13 @@ vec3 scattered(uint object, vec3 light, vec3 albedo) {
     return vec3(0.0);
 }
 
-// Of each channel, whether light goes straight through a surface on its way to a place inside `media`.
-bvec3 lets_light_pass(uint object, Media media, uint way) {
+// Of each channel, what of light goes straight on through a surface on its way to a place inside `media`: all of it or, where
+// it `tints`, what glass does not reflect. `d` is the direction of the shadow ray, `normal` of unit length.
+vec3 light_passed(uint object, Media media, uint way, vec3 d, vec3 normal, bool tints) {
+    float cosine = min(abs(dot3(d, normal)), 1.0);
     switch (object_material_at(object)) {
-    case uint(MATERIAL_GLASS): return glass_lets_light_pass(crossing_of(media, object, way));
+    case uint(MATERIAL_GLASS): return glass_light_passed(crossing_of(media, object, way), cosine, tints);
     }
-    return bvec3(false);
+    return vec3(0.0);
 }
 #endif

@@ -168,12 +168,13 @@ struct LightSum { // 32 bytes
 };
 
 // Push constants of shadow_meet and shadow_go_on.
-struct ShadowParams { // 48 bytes
+struct ShadowParams { // 52 bytes
     uint ray_count;                  //   0 Shadow rays.
     uint passed;                     //   4 Object whose surface is not there, or NONE.
     uint counts;                     //   8 1: the work of rays is counted in the film.
     uint lamp_count;                 //  12 Objects that the light may be inside; NONE: it is not known which.
-    uint lamp_media[8];              //  16 Those, 16 bits each.
+    uint tints;                      //  16 1: the light goes straight on through glass; 0: only between media of one index.
+    uint lamp_media[8];              //  20 What the light may be inside, 16 bits each.
 };
 
 #define CAMERA_PATH 62 // The path of every ray from the camera, but for its pixel

@@ -1,9 +1,11 @@
-//! Surfaces between media of one index: light and rays go through them as if they were not there, dimmed by what the media
-//! absorb.
+//! Surfaces that light passes. Between media of one index, light and rays go through as if they were not there, dimmed by
+//! what the media absorb; other glass takes what it reflects, or blocks light (`render.shadows`).
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 #[path = "clear_skins/grazing.rs"]
 mod grazing;
+#[path = "clear_skins/tinted.rs"]
+mod tinted;
 
 use film::Film;
 use harness::analytic::{V3, View, add, dot, length, percentile, unit};
@@ -169,13 +171,15 @@ fn a_lamp_inside_a_clear_ball_shines_out() {
     assert!(seen > 1_000, "{seen} pixels");
 }
 
-/// Other glass throws the shadow that it threw: black.
+const OPAQUE: &str = "[render]\nshadows = \"opaque\"\n";
+
+/// With opaque shadows, other glass throws a black one.
 #[test]
 fn other_glass_is_opaque_to_light() {
     let sets = [floor(), set_of(fibonacci_sphere(20_000))];
     for ior in ["1.3", "1.0001", "[1.2, 1.1, 1.3]"] {
         let text = format!(
-            "{}{}{FLOOR}[[objects]]\npoints = \"ball.ply\"\nmaterial = {{ kind = \"glass\", ior = {ior} }}\n",
+            "{}{OPAQUE}{}{FLOOR}[[objects]]\npoints = \"ball.ply\"\nmaterial = {{ kind = \"glass\", ior = {ior} }}\n",
             VIEW.text(),
             sun()
         );
@@ -188,7 +192,7 @@ fn other_glass_is_opaque_to_light() {
     }
     // Of one index in one channel, that channel passes.
     let text = format!(
-        "{}{}{FLOOR}[[objects]]\npoints = \"ball.ply\"\n\
+        "{}{OPAQUE}{}{FLOOR}[[objects]]\npoints = \"ball.ply\"\n\
          material = {{ kind = \"glass\", ior = [1.3, 1.0, 1.3], absorption = [0.5, 0.5, 0.5] }}\n",
         VIEW.text(),
         sun()
@@ -406,6 +410,7 @@ fn light_through_skins_is_the_same_to_the_bit() {
     for (settings, camera) in [
         ("[image]\nsize = [40, 30]", ""),
         ("[image]\nsize = [32, 24]\nsamples = 3\n[render]\nfresnel = \"sample\"", ""),
+        ("[image]\nsize = [40, 30]\n[render]\nshadows = \"opaque\"", ""),
         ("[image]\nsize = [32, 24]", "inside = [\"smoke\", \"outer\"]"),
     ] {
         let mut plan = everything(settings, camera);
@@ -425,7 +430,7 @@ fn light_through_skins_is_the_same_to_the_bit() {
     }
 }
 
-/// Glass that shares an index with none, or is far from what does, asks for nothing.
+/// Where shadows are opaque, glass that shares an index with none, or is far from what does, asks for nothing.
 #[test]
 fn scenes_without_such_surfaces_are_left_alone() {
     let glass = |ior: f64, at: f64| {
@@ -436,7 +441,7 @@ fn scenes_without_such_surfaces_are_left_alone() {
     };
     let ball = || set_of(fibonacci_sphere(500));
     let passes = |objects: &str, lights: &str| {
-        plan_of(&format!("{lights}{objects}"), &[ball(), ball()]).light_passes
+        plan_of(&format!("{OPAQUE}{lights}{objects}"), &[ball(), ball()]).light_passes
     };
     assert!(!passes(&(glass(1.5, 0.0) + &glass(1.5, 3.0)), &sun()), "apart");
     assert!(passes(&(glass(1.5, 0.0) + &glass(1.5, 1.0)), &sun()), "one index, overlapping");

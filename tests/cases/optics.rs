@@ -453,6 +453,7 @@ fn a_skin_shades_the_ball_under_it_and_not_itself() {
                 1.0 - gap * spacing
             );
             let glass = scene("kind = \"glass\", ior = 1.000001", &ball);
+            let glass = format!("[render]\nshadows = \"opaque\"\n{glass}");
             let lit = |film: &Film| film.color.iter().filter(|color| color[0] > 0.0).count();
             // Before white, whatever misses the ball under the skin would be white.
             let white = format!("[background]\ncolor = [1.0, 1.0, 1.0]\n{glass}");

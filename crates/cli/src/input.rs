@@ -69,15 +69,16 @@ fn is_exr(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"))
 }
 
-/// The scene that an EXR holds in its header, as TOML.
+/// The scene that an EXR holds in its header, as TOML, with what an earlier program took for granted.
 pub fn scene_of_picture(path: &Path) -> Result<String, Failure> {
-    film::exr_text(path, "pointillist/scene")?.ok_or_else(|| {
+    let text = film::exr_text(path, "pointillist/scene")?.ok_or_else(|| {
         Failure::usage(format!(
             "{}: found no scene in its header, which pictures by pointillist have as pointillist/scene; name one of \
              these, a scene file or a point file",
             path.display()
         ))
-    })
+    })?;
+    Ok(scene::settings_of_header(&text).into_owned())
 }
 
 /// `--root` is for scenes, and a folder.

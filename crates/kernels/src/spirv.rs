@@ -103,8 +103,10 @@ axes! {
     Searching {
         /// Those of a wave.
         Wave = "" [],
-        /// Shadow rays.
+        /// Shadow rays, which any blocks.
         Shadows = "shadows" [SHADOWS],
+        /// Shadow rays that go on through those of glass.
+        Passing = "passing" [PASSING],
     }
 }
 

@@ -1,9 +1,10 @@
-//! Surfaces between media of one index, which light passes (docs/method.md, section 6).
+//! Surfaces that light passes on its way: all of glass, or those between media of one index (docs/method.md, section 6).
 
 use crate::Plan;
 use crate::materials::has_inside;
-use kernels::layout::{ObjectInfo, PASSED_NEAR};
+use kernels::layout::{ObjectInfo, PASSED_NEAR, VOLUME_ISOSURFACE, VolumeInfo};
 use points::{Cloud, Shapes};
+use scene::Shadows;
 
 /// Of the diagonal of an object's points: how far its surface may reach beyond their box.
 const MARGIN: f64 = 0.05;
@@ -22,9 +23,18 @@ fn may_be_clear(objects: &[ObjectInfo]) -> bool {
     })
 }
 
-/// Whether glass borders on air of its own index, or may on other glass of its own index: where their boxes meet.
-pub(crate) fn lets_light_pass(objects: &[ObjectInfo], cloud: &Cloud, shapes: &[Shapes]) -> bool {
+/// Whether there is glass that light passes: any, where it goes straight on; else such as borders on air of its own index,
+/// or may on other glass of its own index: where their boxes meet.
+pub(crate) fn lets_light_pass(
+    shadows: Shadows,
+    objects: &[ObjectInfo],
+    cloud: &Cloud,
+    shapes: &[Shapes],
+) -> bool {
     let glass: Vec<usize> = (0..objects.len()).filter(|&at| has_inside(&objects[at])).collect();
+    if shadows == Shadows::Tinted {
+        return !glass.is_empty();
+    }
     if glass.iter().any(|&at| share_an_index(objects[at].ior, [1.0; 3])) {
         return true;
     }
@@ -69,12 +79,32 @@ impl Plan {
         may_be_clear(&self.objects)
     }
 
-    /// What light for the points of an object's volume passes, as kernels take it: the object's own surface, or, where
-    /// light can pass it as other surfaces, what of it is near the point that asks.
+    /// Whether light of this number goes straight on through glass, rather than only between media of one index.
     #[must_use]
-    pub fn passed_of(&self, object: u32) -> u32 {
+    pub fn tints(&self, light: u32) -> bool {
+        self.shadows == Shadows::Tinted && (light as usize) < self.lights.len()
+    }
+
+    /// Whether light of this number goes on through isosurfaces, of which some are of glass.
+    #[must_use]
+    pub fn passes_isosurfaces(&self, light: u32) -> bool {
+        let of_glass = |info: &VolumeInfo| {
+            info.mode == VOLUME_ISOSURFACE && has_inside(&self.objects[info.object as usize])
+        };
+        self.tints(light) && self.volumes.infos.iter().any(of_glass)
+    }
+
+    /// Whether light for the points of a volume may pass the surface of the volume's own object as it passes others.
+    pub(crate) fn may_pass_own_surface(&self) -> bool {
+        self.volumes.any_lit() && (0..self.lights.len() as u32).any(|light| self.tints(light))
+    }
+
+    /// What light of this number for the points of an object's volume passes, as kernels take it: the object's own surface,
+    /// or, where light can pass it as other surfaces, what of it is near the point that asks.
+    #[must_use]
+    pub fn passed_of(&self, object: u32, light: u32) -> u32 {
         let own = &self.objects[object as usize];
-        let clear = self.light_passes && has_inside(own) && share_an_index(own.ior, [1.0; 3]);
-        if clear { object | PASSED_NEAR } else { object }
+        let clear = || self.tints(light) || share_an_index(own.ior, [1.0; 3]);
+        if self.light_passes && has_inside(own) && clear() { object | PASSED_NEAR } else { object }
     }
 }

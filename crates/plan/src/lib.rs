@@ -82,7 +82,7 @@ use lights::local_light;
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
 use points::{Apart, Cloud, PointSet, SlotRange, Unwatched, Watch};
 use scene::{Fresnel, Scene, Up};
-pub use scene::{Primary, RayLoop, Secondary};
+pub use scene::{Primary, RayLoop, Secondary, Shadows};
 use std::sync::Arc;
 
 /// In place of a sample's number: the ray through a pixel's centre, where there are several samples beside it.
@@ -135,7 +135,9 @@ pub struct Plan {
     pub cleaned: Vec<Cleaned>,
     /// All lights.
     pub lights: Vec<layout::Light>,
-    /// Whether their light passes surfaces between media of one index, of which there are some: shadow rays go on there.
+    /// What glass does with light on its way; [`Plan::tints`] says so of each light.
+    pub shadows: Shadows,
+    /// Whether their light passes surfaces, of which there are some: shadow rays go on there.
     pub light_passes: bool,
     /// Of each light the objects of glass that it is, or may be, inside of, where its light passes surfaces; `None` where
     /// that is not asked.
@@ -294,8 +296,9 @@ impl Plan {
         let scene_lights = framing::lights_for(&scene.lights, scene.key_light, &camera);
         let lights = scene_lights.iter().map(|light| local_light(light, &camera, cloud.origin));
         let lights: Vec<layout::Light> = lights.collect();
+        let shadows = scene.render.shadows;
         let light_passes =
-            !scene_lights.is_empty() && clear::lets_light_pass(&objects, &cloud, &shapes);
+            !scene_lights.is_empty() && clear::lets_light_pass(shadows, &objects, &cloud, &shapes);
         let lamp_media = match light_passes {
             true => inside::media_of_lamps(scene, &known, &lights, (camera.eye, &camera_media)),
             false => vec![None; lights.len()],
@@ -345,6 +348,7 @@ impl Plan {
             image_files: list.files,
             cleaned: list.cleaned,
             lights,
+            shadows,
             light_passes,
             lamp_media,
             image_size,

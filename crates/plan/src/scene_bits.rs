@@ -49,7 +49,7 @@ impl Plan {
             (SCENE_VOLUMES, !self.volumes.infos.is_empty()),
             (SCENE_MANY_LIGHTS, self.lights.len() > 1),
             (SCENE_TURNED, self.turns_environment()),
-            (SCENE_CLEAR, self.may_be_clear()),
+            (SCENE_CLEAR, self.may_be_clear() || self.may_pass_own_surface()),
             (SCENE_DEPTHS, self.wants_volume_depth()),
         ]
         .into_iter()

@@ -129,15 +129,21 @@ pub(crate) fn scattered<R: Real>(
     }
 }
 
-/// Of each channel, whether light goes straight through a surface on its way to a place inside `media`.
-pub(crate) fn lets_light_pass(
+/// Of each channel, what of light goes straight on through a surface on its way to a place inside `media`: all of it or,
+/// where it `tints`, what glass does not reflect. `d` is the direction of the shadow ray, `normal` of unit length.
+pub(crate) fn light_passed<R: Real>(
     object: u32,
     objects: &[ObjectInfo],
     (media, way): (&Media, Way),
-) -> [bool; 3] {
+    [d, normal]: [V3<R>; 2],
+    tints: bool,
+) -> V3<R> {
+    let cosine = d.dot(normal).abs().min(R::of(1.0));
     match objects[object as usize].material {
-        MATERIAL_GLASS => glass::lets_light_pass(&media.crossing(object, way, objects), objects),
-        _ => [false; 3],
+        MATERIAL_GLASS => {
+            glass::light_passed(&media.crossing(object, way, objects), cosine, tints, objects)
+        }
+        _ => V3::splat(R::of(0.0)),
     }
 }
 
@@ -160,7 +166,7 @@ mod tests {
             after.split("\n}\n").next().unwrap().to_owned()
         };
         let [sends, lights, scatters, passes] =
-            ["\nSent sent_on(", "\nvec3 lobe(", "\nvec3 scattered(", "\nbvec3 lets_light_pass("]
+            ["\nSent sent_on(", "\nvec3 lobe(", "\nvec3 scattered(", "\nvec3 light_passed("]
                 .map(body);
         let bits = ["MATERIAL_LIT", "MATERIAL_SENDS", "MATERIAL_INSIDE"];
         let all = STAGES.iter().flat_map(|stage| stage.constants);
@@ -174,7 +180,7 @@ mod tests {
             assert_eq!(lights.contains(&case), lit, "{name}: lobe");
             assert_eq!(scatters.contains(&case), lit, "{name}: scattered");
             let inside = material & MATERIAL_INSIDE != 0;
-            assert_eq!(passes.contains(&case), inside, "{name}: lets_light_pass");
+            assert_eq!(passes.contains(&case), inside, "{name}: light_passed");
 
             let info = ObjectInfo { material, ior: [1.5; 3], ..ObjectInfo::zeroed() };
             let objects = [info];

@@ -30,13 +30,28 @@ pub fn refraction<R: Real>(d: V3<R>, n: V3<R>, n1: R, n2: R) -> Refraction<R> {
         return Refraction { direction: reflected(d, n), total: true, reflectance: one };
     }
     let transmitted = square.sqrt();
-    let across = (n1 * incident - n2 * transmitted) / (n1 * incident + n2 * transmitted);
-    let along = (n2 * incident - n1 * transmitted) / (n2 * incident + n1 * transmitted);
     Refraction {
         direction: (d.times(eta) + n.times(eta * incident - transmitted)).normalize(),
         total: false,
-        reflectance: R::of(0.5) * (across * across + along * along),
+        reflectance: fresnel_reflectance([n1, incident], [n2, transmitted]),
     }
+}
+
+/// The mean of the two polarisations' reflectances, from index and cosine on either side.
+fn fresnel_reflectance<R: Real>([n1, incident]: [R; 2], [n2, transmitted]: [R; 2]) -> R {
+    let across = (n1 * incident - n2 * transmitted) / (n1 * incident + n2 * transmitted);
+    let along = (n2 * incident - n1 * transmitted) / (n2 * incident + n1 * transmitted);
+    R::of(0.5) * (across * across + along * along)
+}
+
+/// What is reflected of unpolarised light from index n1 to a higher n2, by the cosine of its angle; never all of it but at
+/// 90 degrees.
+#[must_use]
+pub fn reflectance_into<R: Real>(incident: R, n1: R, n2: R) -> R {
+    let one = R::of(1.0);
+    let eta = n1 / n2;
+    let transmitted = (one - (eta * eta) * (one - incident * incident)).sqrt();
+    fresnel_reflectance([n1, incident], [n2, transmitted])
 }
 
 #[cfg(test)]

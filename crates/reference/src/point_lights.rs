@@ -53,7 +53,7 @@ pub fn point_lights<R: Real>(
                 }
                 for (at, (of_light, light)) in of.iter_mut().zip(&plan.lights).enumerate() {
                     let mut ray = point_rays(light, x);
-                    ray.passed = plan.passed_of(info.object);
+                    ray.passed = plan.passed_of(info.object, at as u32);
                     if plan.light_passes {
                         let all = V3::splat(R::of(1.0));
                         let scene = (plan, &levels, at);

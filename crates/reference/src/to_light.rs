@@ -8,7 +8,7 @@ mod shadow_meet;
 use crate::Reference;
 use crate::camera_rays::Ray;
 use crate::grid_trace::grid_trace;
-use crate::isosurface::blocks;
+use crate::isosurface::{blocks, isosurface};
 use crate::levels::Levels;
 use crate::march::march;
 use crate::media::Media;
@@ -40,14 +40,25 @@ pub(crate) fn light_through<R: Real>(
 ) -> V3<R> {
     let none = V3::splat(R::of(0.0));
     let to_light = ToLight { reference, plan, light, passed };
+    let passes_isosurfaces = plan.passes_isosurfaces(light as u32);
     let mut path = shadow_media(&ray, media);
     loop {
         grid_trace(&mut ray, levels, &reference.lists, &reference.polynomials, false);
         account(&ray);
-        let Some(met) = to_light.shadow_meet(&mut ray, &mut path, &mut arriving) else {
+        let on_isosurface = if passes_isosurfaces {
+            isosurface(&ray, ray.hit_t, &path.media, &plan.volumes)
+        } else {
+            None
+        };
+        if let Some((hit, slot)) = &on_isosurface {
+            (ray.hit_t, ray.hit_slot) = (hit.t, *slot);
+        }
+        let on_isosurface = on_isosurface.map(|(hit, _)| hit);
+        let Some(met) = to_light.shadow_meet(&mut ray, &mut path, &mut arriving, on_isosurface)
+        else {
             return none;
         };
-        if blocks(&ray, ray.hit_t, &plan.volumes) {
+        if !passes_isosurfaces && blocks(&ray, ray.hit_t, &plan.volumes) {
             return none;
         }
         arriving = marched(plan, &ray, &path, arriving);

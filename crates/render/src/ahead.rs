@@ -92,7 +92,10 @@ fn likely_modules(device: &Arc<Device>, plan: &Plan) -> [Vec<&'static Module>; 3
     when(marched && (is_lit || points_lit), &[spirv::march(Marching::Shadows, rays)]);
     let isosurfaces = plan.volumes.any_isosurface();
     when(isosurfaces, &[spirv::isosurface(Searching::Wave, rays)]);
-    when(isosurfaces && is_lit, &[spirv::isosurface(Searching::Shadows, rays)]);
+    for (of, passes) in [(Searching::Shadows, false), (Searching::Passing, true)] {
+        let any = (0..plan.lights.len() as u32).any(|at| plan.passes_isosurfaces(at) == passes);
+        when(isosurfaces && is_lit && any, &[spirv::isosurface(of, rays)]);
+    }
     when(plan.refines(), &[spirv::refine(rays)]);
     when(plan.samples > 1, &[spirv::accumulate()]);
     [first, build, then]

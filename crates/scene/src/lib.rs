@@ -54,10 +54,11 @@ pub use material::{Albedo, Material, MaterialKind, TextureAxis};
 pub use models::MODELS_VARIABLE;
 pub use object::{Object, PointColumn, PointColumns, Units};
 pub use render_settings::{
-    Fresnel, GridResolution, Integrator, Primary, RayLoop, RenderSettings, Secondary,
+    Fresnel, GridResolution, Integrator, Primary, RayLoop, RenderSettings, Secondary, Shadows,
 };
 pub use scene::{Camera, Projection, Scene, Up};
 pub use schema::{json_schema, suite_json_schema};
+pub use settings::settings_of_header;
 pub use suite::{Shape, SimulatedScan, Suite, SuiteRow};
 pub use surface::{
     FeatureSize, Neighbors, Normals, Polynomial, RadiusOf, Refine, Scatter, ShapeRadius, Surface,

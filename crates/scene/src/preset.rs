@@ -15,6 +15,7 @@ const PAPER: [&[(&str, &str)]; 2] = [
         ("primary", "\"discs\""),
         ("secondary", "\"grid\""),
         ("fresnel", "\"transmit\""),
+        ("shadows", "\"opaque\""),
     ],
     &[
         ("neighbors", "16"),
@@ -80,7 +81,7 @@ fn add(table: &mut Node, keys: &[(&str, &str)], node: &dyn Fn(&str) -> Option<No
 #[cfg(test)]
 mod tests {
     use crate::{FeatureSize, Fresnel, GridResolution, Neighbors, Normals, Polynomial};
-    use crate::{Primary, RayLoop, Refine, Scene, Secondary};
+    use crate::{Primary, RayLoop, Refine, Scene, Secondary, Shadows};
     use std::path::Path;
 
     const OBJECTS: &str = "[[objects]]\npoints = 'a.ply'\n[[objects]]\npoints = 'b.ply'\n";
@@ -94,7 +95,7 @@ mod tests {
     fn the_paper_is_what_its_keys_spelled_out_are() {
         let preset = scene(&format!("[render]\npreset = 'paper'\n{OBJECTS}"), &[]);
         let render = "[render]\ncells_per_pass = 1\nloop = 'images'\nprimary = 'discs'\nsecondary = 'grid'\n\
-                      grid_resolution = 'paper'\n";
+                      grid_resolution = 'paper'\nshadows = 'opaque'\n";
         let surface = "[objects.surface]\nneighbors = 16\npolynomial = 'incomplete'\nclose_gaps = false\n\
                        boundary_clip = false\nnormals = 'polynomial'\n";
         let spelled = OBJECTS.replace("ply'\n", &format!("ply'\n{surface}"));
@@ -104,6 +105,7 @@ mod tests {
         let r = &preset.render;
         assert_eq!((r.cells_per_pass, r.ray_loop, r.primary), (1, RayLoop::Images, Primary::Discs));
         assert_eq!((r.secondary, r.fresnel), (Secondary::Grid, Fresnel::Transmit));
+        assert_eq!(r.shadows, Shadows::Opaque);
         for object in &preset.objects {
             let s = &object.surface;
             assert_eq!((s.neighbors, s.trust), (Neighbors::Count(16), 0.6));

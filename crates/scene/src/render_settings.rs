@@ -16,6 +16,8 @@ pub struct RenderSettings {
     pub clamp: Option<f64>,
     /// What glass does with a ray that it both reflects and refracts.
     pub fresnel: Fresnel,
+    /// What glass does with light on its way to a surface.
+    pub shadows: Shadows,
     /// Cells a ray may cross in one pass; 0 lets the device decide. Changes no pixel.
     pub cells_per_pass: u32,
     /// Where the ray state lives. Changes no pixel.
@@ -71,6 +73,15 @@ pub enum Fresnel {
     Transmit,
     /// Choose one of the two at random with the Fresnel probability.
     Sample,
+}
+
+/// What glass does with light on its way to a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shadows {
+    /// Light goes straight on through glass, less what Fresnel's equations reflect and what media absorb.
+    Tinted,
+    /// Glass blocks light, but for surfaces between media of one index.
+    Opaque,
 }
 
 /// Where the ray state lives between passes.
@@ -143,6 +154,14 @@ pub(crate) static RENDER: Table = Table {
              probability.",
         ),
         key(
+            "shadows",
+            Kind::Choice(&["tinted", "opaque"]),
+            Value("\"tinted\""),
+            "What glass does with light on its way to a surface: let it go straight on, dimmed by Fresnel's equations \
+             and by what media absorb, in colour, or block it as in the paper, but for surfaces between media of one \
+             index.",
+        ),
+        key(
             "cells_per_pass",
             count(0, u32::MAX as i64, "cells"),
             Value("0"),
@@ -207,6 +226,10 @@ impl RenderSettings {
                 "sample" => Fresnel::Sample,
                 _ => Fresnel::Transmit,
             },
+            shadows: match table.text("shadows").as_str() {
+                "opaque" => Shadows::Opaque,
+                _ => Shadows::Tinted,
+            },
             cells_per_pass: table.count("cells_per_pass"),
             ray_loop: match table.text("loop").as_str() {
                 "images" => RayLoop::Images,
@@ -244,6 +267,10 @@ pub(crate) fn write_render(out: &mut String, render: &RenderSettings) -> fmt::Re
         Fresnel::Transmit => "transmit",
         Fresnel::Sample => "sample",
     };
+    let shadows = match render.shadows {
+        Shadows::Tinted => "tinted",
+        Shadows::Opaque => "opaque",
+    };
     writeln!(out, "[render]")?;
     let integrator = match render.integrator {
         Integrator::Direct => "direct",
@@ -256,6 +283,7 @@ pub(crate) fn write_render(out: &mut String, render: &RenderSettings) -> fmt::Re
         writeln!(out, "clamp = {clamp:?}")?;
     }
     writeln!(out, "fresnel = \"{fresnel}\"")?;
+    writeln!(out, "shadows = \"{shadows}\"")?;
     writeln!(out, "seed = {}", render.seed)?;
     match render.grid_resolution {
         GridResolution::Cells(cells) => writeln!(out, "grid_resolution = {cells}\n"),

@@ -4,6 +4,7 @@ use crate::light::write_light;
 use crate::object::write_object;
 use crate::render_settings::write_render;
 use crate::{Filter, Scene};
+use std::borrow::Cow;
 use std::fmt::{self, Write};
 
 impl Scene {
@@ -51,6 +52,28 @@ impl Scene {
             write_object(out, object)?;
         }
         Ok(())
+    }
+}
+
+/// Keys of `[render]` that programs of earlier days had not, with what they did.
+const EARLIER: [(&str, &str); 1] = [("shadows", "\"opaque\"")];
+
+/// The scene of a picture's header, as [`Scene::settings_toml`] has written it, with the keys that the program had not
+/// when it wrote it: they say what it did then, so that the picture renders again. Any other text stays as it is.
+#[must_use]
+pub fn settings_of_header(text: &str) -> Cow<'_, str> {
+    const TABLE: &str = "\n[render]\n";
+    let Some(at) = text.find(TABLE) else { return Cow::Borrowed(text) };
+    let (before, keys) = text.split_at(at + TABLE.len());
+    let table = keys.split("\n[").next().unwrap_or(keys);
+    let has = |name: &str| table.lines().any(|line| line.starts_with(&format!("{name} = ")));
+    let added: String = (EARLIER.iter().filter(|(name, _)| !has(name)))
+        .map(|(name, value)| format!("{name} = {value}\n"))
+        .collect();
+    if added.is_empty() {
+        Cow::Borrowed(text)
+    } else {
+        Cow::Owned(format!("{before}{added}{keys}"))
     }
 }
 

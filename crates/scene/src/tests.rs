@@ -36,6 +36,7 @@ max_bounces = 3
 integrator = "path"
 clamp = 12.5
 fresnel = "transmit"
+shadows = "opaque"
 cells_per_pass = 4
 loop = "images"
 seed = 4294967295

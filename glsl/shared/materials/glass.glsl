@@ -16,7 +16,16 @@ Sent glass_sends(Place place, Fate fate, uint channels, Drawn drawn) {
     return Sent(direction, object_albedo_at(place.object), reflects);
 }
 
-// Where the media on both sides have one index.
-bvec3 glass_lets_light_pass(Crossing crossing) {
-    return equal(ior_of(crossing.before), ior_of(crossing.after));
+// All where the media on both sides have one index. Else, where light goes straight on, what is not reflected of it; `cosine`
+// is that of the angle on the side of the lower index, so that nothing is reflected totally.
+vec3 glass_light_passed(Crossing crossing, float cosine, bool tints) {
+    vec3 n1 = ior_of(crossing.before), n2 = ior_of(crossing.after);
+    vec3 low = min(n1, n2), high = max(n1, n2);
+    bvec3 alike = equal(n1, n2);
+    vec3 reflected = vec3(1.0);
+    if (tints) {
+        reflected = vec3(reflectance_into(cosine, low.x, high.x), reflectance_into(cosine, low.y, high.y),
+                         reflectance_into(cosine, low.z, high.z));
+    }
+    return mix(vec3(1.0) - reflected, vec3(1.0), alike);
 }

@@ -271,7 +271,9 @@ stage! {
             counts: u32,
             /// Objects that the light may be inside; `NONE`: it is not known which.
             lamp_count: u32,
-            /// Those, 16 bits each.
+            /// 1: the light goes straight on through glass; 0: only between media of one index.
+            tints: u32,
+            /// What the light may be inside, 16 bits each.
             lamp_media: [u32; MEDIA_WORDS as usize],
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{Drawn, Place, Sent};
 use crate::media::{Crossing, ior_of};
-use crate::optics::{reflected, refraction};
+use crate::optics::{reflectance_into, reflected, refraction};
 use crate::real::{Real, V3};
 use kernels::layout::ObjectInfo;
 
@@ -27,8 +27,22 @@ pub(super) fn sent_on<R: Real>(
     sent(if reflects { reflected(place.d, place.normal) } else { bent.direction }, reflects)
 }
 
-/// Where the media on both sides have one index.
-pub(super) fn lets_light_pass(crossing: &Crossing, objects: &[ObjectInfo]) -> [bool; 3] {
+/// All where the media on both sides have one index. Else, where light goes straight on, what is not reflected of it;
+/// `cosine` is that of the angle on the side of the lower index, so that nothing is reflected totally.
+pub(super) fn light_passed<R: Real>(
+    crossing: &Crossing,
+    cosine: R,
+    tints: bool,
+    objects: &[ObjectInfo],
+) -> V3<R> {
     let [before, after] = [crossing.before, crossing.after].map(|medium| ior_of(medium, objects));
-    [0, 1, 2].map(|channel| before[channel] == after[channel])
+    let one = R::of(1.0);
+    V3([0, 1, 2].map(|channel| {
+        let [n1, n2] = [before[channel], after[channel]];
+        match n1 == n2 {
+            true => one,
+            false if !tints => R::of(0.0),
+            false => one - reflectance_into(cosine, R::of_f32(n1.min(n2)), R::of_f32(n1.max(n2))),
+        }
+    }))
 }

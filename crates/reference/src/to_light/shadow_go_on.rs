@@ -13,13 +13,14 @@ impl<R: Real> ToLight<'_, R> {
         &self,
         ray: &Ray<R>,
         path: &mut ShadowPath<R>,
-        met: Met,
+        met: Met<R>,
     ) -> Option<Ray<R>> {
         path.media = path.media.through(met.object, met.way);
         path.crossings += 1;
         let mut ray = *ray;
         ray.hit_slot = met.slot;
-        let hit = surface_hit(&ray, &self.reference.polynomials)?;
+        let of_points = || surface_hit(&ray, &self.reference.polynomials);
+        let hit = met.on_isosurface.or_else(of_points)?;
         let left = path.left;
         let is_finite = left < R::of(NO_HIT);
         path.left = if is_finite { (left - ray.hit_t).max(R::of(0.0)) } else { left };

@@ -3,13 +3,16 @@
 use super::ToLight;
 use super::shadow_media::ShadowPath;
 use crate::camera_rays::Ray;
-use crate::material::lets_light_pass;
+use crate::material::light_passed;
 use crate::media::{Way, transmittance};
 use crate::real::{NO_HIT, Real, V3};
+use crate::surface_hit::Hit;
 use kernels::layout::{MOST_CROSSINGS, NONE, PASSED_NEAR};
 
 /// A surface that lets light through.
-pub(super) struct Met {
+pub(super) struct Met<R> {
+    /// Where, if it is an isosurface.
+    pub on_isosurface: Option<Hit<R>>,
     pub slot: u32,
     pub object: u32,
     pub way: Way,
@@ -18,12 +21,14 @@ pub(super) struct Met {
 impl<R: Real> ToLight<'_, R> {
     /// Takes from the light what the media on the way and the surface do. `None`: nothing is left; `Some(None)`: the ray
     /// has arrived. Of a ray that is let through, isosurfaces and volumes as far as that surface count: it has no hit.
+    /// `on_isosurface` is the hit where it is one with an isosurface.
     pub(super) fn shadow_meet(
         &self,
         ray: &mut Ray<R>,
         path: &mut ShadowPath<R>,
         arriving: &mut V3<R>,
-    ) -> Option<Option<Met>> {
+        on_isosurface: Option<Hit<R>>,
+    ) -> Option<Option<Met<R>>> {
         let objects = &self.plan.objects;
         let slot = ray.hit_slot;
         // The last part ends at the light: what that is not inside, the ray has left unseen, or was never in.
@@ -42,14 +47,18 @@ impl<R: Real> ToLight<'_, R> {
         let polynomial = &self.reference.polynomials[slot as usize];
         let object = polynomial.object;
         let way = polynomial.way_through(ray.origin, ray.direction, ray.hit_t);
-        let lets = lets_light_pass(object, objects, (&path.media, way));
-        if lets == [false; 3] || path.crossings >= MOST_CROSSINGS {
+        let of_points = || polynomial.surface_at(ray.origin, ray.direction, ray.hit_t).1;
+        let normal = on_isosurface.map_or_else(of_points, |hit| hit.normal);
+        let tints = self.plan.tints(self.light as u32);
+        let crossed = (&path.media, way);
+        let share = light_passed(object, objects, crossed, [ray.direction, normal], tints);
+        let zero = R::of(0.0);
+        let any = |light: V3<R>| light.0.iter().any(|&channel| channel > zero);
+        if !any(share) || path.crossings >= MOST_CROSSINGS {
             return None;
         }
-        let zero = R::of(0.0);
-        let of = |channel: usize| if lets[channel] { arriving.0[channel] } else { zero };
-        *arriving = V3([0, 1, 2].map(of));
+        *arriving = *arriving * share;
         ray.hit_slot = NONE;
-        arriving.0.iter().any(|&channel| channel > zero).then_some(Some(Met { slot, object, way }))
+        any(*arriving).then_some(Some(Met { on_isosurface, slot, object, way }))
     }
 }

@@ -1,11 +1,11 @@
-//! Light at the hits of a wave: shadow rays, past surfaces between media of one index where there are some, and what
-//! surfaces make of what arrives.
+//! Light at the hits of a wave: shadow rays, past surfaces that let light through where there are some, and what surfaces
+//! make of what arrives.
 
 use crate::RenderError;
 use crate::frame::Frame;
 use crate::stats::Traced;
 use kernels::layout::{MARKS, NONE, PATHS, ShadowParams, WAVE_SHARES_PATH, WaveParams};
-use kernels::spirv;
+use kernels::spirv::{self, Searching};
 use points::device::line;
 
 impl Frame<'_> {
@@ -44,20 +44,27 @@ impl Frame<'_> {
     ) -> Result<(), RenderError> {
         let passed = traced.passed();
         let light_passes = self.plan.light_passes;
+        let passes_isosurfaces = self.plan.passes_isosurfaces(light);
         let (lamp_count, lamp_media) = self.plan.lamp_media_of(light);
         let counts = u32::from(passed == NONE);
-        let params = ShadowParams { ray_count, passed, counts, lamp_count, lamp_media };
+        let tints = u32::from(self.plan.tints(light));
+        let params = ShadowParams { ray_count, passed, counts, lamp_count, tints, lamp_media };
         let (rays, invocations) = (self.rays(), line(ray_count));
         let through = self.structure_of(traced);
         let mut alive = ray_count;
         // Leg by leg, each traced to its end: what is left of the way after a surface that lets light pass.
         while alive > 0 {
             self.trace_to_the_end([ray_count, alive], traced, through)?;
+            if passes_isosurfaces {
+                self.shadow_isosurfaces(ray_count, Searching::Passing)?;
+            }
             if light_passes {
                 let own = self.renderer.rays.shadows.in_place();
                 self.dispatch(spirv::shadow_meet(rays), &own, &params, invocations);
             }
-            self.shadow_isosurfaces(ray_count)?;
+            if !passes_isosurfaces {
+                self.shadow_isosurfaces(ray_count, Searching::Shadows)?;
+            }
             self.shadow_march(ray_count)?;
             if !light_passes {
                 return Ok(());

@@ -65,13 +65,14 @@ impl Frame<'_> {
     /// Where a wave's rays first meet an isosurface, if the scene has any.
     pub fn meet_isosurfaces(&mut self, wave: &Wave) -> Result<(), RenderError> {
         let own = self.renderer.rays.state.in_place();
+        let own = own.buffer(PATHS, self.renderer.buffers.wave.paths());
         self.isosurfaces(wave.params.ray_count, Searching::Wave, own)
     }
 
-    /// Whether shadow rays meet one.
-    pub fn shadow_isosurfaces(&mut self, ray_count: u32) -> Result<(), RenderError> {
-        let own = self.renderer.rays.shadows.in_place();
-        self.isosurfaces(ray_count, Searching::Shadows, own)
+    /// Whether shadow rays meet one, or where those first do that go on through glass.
+    pub fn shadow_isosurfaces(&mut self, ray_count: u32, of: Searching) -> Result<(), RenderError> {
+        let own = self.with_shadow_media(self.renderer.rays.shadows.in_place());
+        self.isosurfaces(ray_count, of, own)
     }
 
     fn isosurfaces(
@@ -83,7 +84,6 @@ impl Frame<'_> {
         let Renderer { buffers, run, .. } = &mut *self.renderer;
         let any = self.plan.volumes.any_isosurface();
         let Some(volumes) = buffers.volumes.as_ref().filter(|_| any) else { return Ok(()) };
-        let own = own.buffer(PATHS, buffers.wave.paths());
         let bytes = u64::from(ray_count) * size_of::<layout::IsoSearch>() as u64;
         run.recorder.fill(&volumes.searches, 0, bytes, 0);
         let module = spirv::isosurface(of, self.rays());
@@ -119,7 +119,7 @@ impl Frame<'_> {
         self.dispatch(spirv::point_rays(rays), &own, params, invocations);
         self.renderer.rays.shadows.passed();
         let object = self.plan.volumes.infos[params.volume as usize].object;
-        let traced = Traced::PastObject(self.plan.passed_of(object));
+        let traced = Traced::PastObject(self.plan.passed_of(object, params.light));
         self.send_to_light(params.count, params.light, traced)?;
         let own = self.renderer.rays.shadows.in_place();
         self.dispatch(spirv::point_lights(rays), &own, params, invocations);

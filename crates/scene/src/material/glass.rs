@@ -21,8 +21,8 @@ pub(super) const GLASS: Described = Described {
             ]),
             Value("1.5"),
             "Glass: refractive index, one number or one for each of red, green and blue. Where it is that of the \
-             medium around, 1 for air, the surface is not seen and light passes it; any other throws a black \
-             shadow.",
+             medium around, 1 for air, the surface is not seen and all light passes it; what other glass does with \
+             light is up to render.shadows.",
         ),
         key(
             "abbe",

@@ -31,6 +31,7 @@ fn every_built_key_is_read() {
         integrator: Integrator::Path,
         clamp: Some(12.5),
         fresnel: Fresnel::Transmit,
+        shadows: Shadows::Opaque,
         cells_per_pass: 4,
         ray_loop: RayLoop::Images,
         seed: u32::MAX,
@@ -220,6 +221,7 @@ fn what_is_left_out_is_the_contracts_default() {
     };
     assert_eq!(scene.image, image);
     assert_eq!((scene.render.max_bounces, scene.render.fresnel), (8, Fresnel::Transmit));
+    assert_eq!(scene.render.shadows, Shadows::Tinted);
     assert_eq!((scene.render.cells_per_pass, scene.render.ray_loop), (0, RayLoop::Auto));
     assert_eq!((scene.render.seed, scene.render.grid_resolution), (0, GridResolution::Cells(0)));
     assert_eq!(scene.render.primary, Primary::Auto);

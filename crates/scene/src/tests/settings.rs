@@ -19,6 +19,26 @@ fn settings_parse_to_the_same_scene_and_the_same_bytes() {
     assert_eq!(read(&small.settings_toml()), Ok(small));
 }
 
+/// Glass blocked light before there was a key for it, and a header says nothing of it.
+#[test]
+fn a_header_of_earlier_days_says_what_was_done_then() {
+    for scene in [read(FULL).unwrap(), read(SMALL).unwrap()] {
+        let settings = scene.settings_toml();
+        assert_eq!(settings_of_header(&settings), settings);
+        let line = settings.lines().find(|line| line.starts_with("shadows = ")).unwrap();
+        let earlier = settings.replace(&format!("{line}\n"), "");
+        assert_ne!(earlier, settings);
+        let again = read(&settings_of_header(&earlier)).unwrap();
+        assert_eq!(
+            again.render,
+            RenderSettings { shadows: Shadows::Opaque, ..read(&settings).unwrap().render }
+        );
+    }
+    for other in ["", "[render]", "[image]\nsize = [4, 3]\n"] {
+        assert_eq!(settings_of_header(other), other);
+    }
+}
+
 #[test]
 fn settings_state_every_built_key() {
     fn names(table: &Table, path: &str, out: &mut Vec<(&'static str, String)>) {
