@@ -1,8 +1,10 @@
 //! How the environment is turned: its top is the camera's `up` where that is an axis, and the scene may turn it
 //! about the world's axes (docs/method.md, section 6).
 
+mod made;
 mod table;
 
+pub(crate) use made::{made_image, sun_of};
 pub use table::EnvironmentTable;
 
 use kernels::layout::ImageInfo;

@@ -15,6 +15,17 @@ pub enum PlanError {
     /// A camera whose keys do not go with the points.
     #[error("{0}")]
     Camera(String),
+    /// A sky whose sun is below its horizon.
+    #[error(
+        "background.sky.sun: found a direction {degrees:.2} degrees below the horizon where up is {up:?}, expected one at \
+         or above it; raise it, or give camera.up"
+    )]
+    SunBelowHorizon {
+        /// How far it is below.
+        degrees: f64,
+        /// The camera's up.
+        up: [f64; 3],
+    },
     /// A material asks for colours that the file lacks.
     #[error(
         "object '{name}': material.albedo is \"points\" but {file} has no colours; give a colour \

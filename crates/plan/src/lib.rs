@@ -40,6 +40,7 @@ mod precision;
 mod scales;
 mod scene_bits;
 mod shapes;
+mod sky;
 mod steep;
 mod structure;
 mod tiles;
@@ -258,12 +259,6 @@ impl Plan {
         )?;
         color_isosurfaces(scene, &volumes, &mut objects);
         let channel_alpha = objects.iter().any(materials::tells_channels_apart);
-        let environment = match &scene.background.environment {
-            Some(file) => {
-                add_image(&mut list, images.environment.as_ref(), file, Use::Environment)?
-            }
-            None => NONE,
-        };
         let camera = match scene.camera.whole() {
             Some(camera) => camera,
             None => {
@@ -273,6 +268,16 @@ impl Plan {
                     &framing::Subject { sets, bounds: *bounds, image_size, up },
                 )?
             }
+        };
+        let environment = match &scene.background.environment {
+            Some(file) => {
+                add_image(&mut list, images.environment.as_ref(), file, Use::Environment)?
+            }
+            None => match environment::made_image(&scene.background, camera.up)? {
+                Some((image, name)) => (list.add(&image, name, Use::Environment))
+                    .ok_or_else(|| PlanError::TooManyTexels(name.to_owned()))?,
+                None => NONE,
+            },
         };
         if environment != NONE {
             let turn = environment::turn(camera.up, scene.background.rotate);
@@ -294,11 +299,16 @@ impl Plan {
         let chosen_text = chosen::attribute(&found.chosen);
         let color_scales = scales::of_scene(scene, &volumes, &found.chosen);
         let scene_lights = framing::lights_for(&scene.lights, scene.key_light, &camera);
-        let lights = scene_lights.iter().map(|light| local_light(light, &camera, cloud.origin));
-        let lights: Vec<layout::Light> = lights.collect();
+        // The sun of a sky is a light where the background lights; headers have it in the background.
+        let sun = (scene.background_lights())
+            .then(|| environment::sun_of(&scene.background, camera.up))
+            .flatten();
+        let lights = scene_lights.iter().chain(&sun);
+        let lights: Vec<layout::Light> =
+            lights.map(|light| local_light(light, &camera, cloud.origin)).collect();
         let shadows = scene.render.shadows;
         let light_passes =
-            !scene_lights.is_empty() && clear::lets_light_pass(shadows, &objects, &cloud, &shapes);
+            !lights.is_empty() && clear::lets_light_pass(shadows, &objects, &cloud, &shapes);
         let lamp_media = match light_passes {
             true => inside::media_of_lamps(scene, &known, &lights, (camera.eye, &camera_media)),
             false => vec![None; lights.len()],
@@ -338,7 +348,7 @@ impl Plan {
                 fresnel: u32::from(scene.render.fresnel == Fresnel::Sample),
                 seed: scene.render.seed,
                 light: 0,
-                light_count: scene.lights.len() as u32,
+                light_count: lights.len() as u32,
                 sample_index: NONE,
             },
             objects,

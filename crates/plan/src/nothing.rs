@@ -136,7 +136,7 @@ impl Asked<'_> {
     /// Whether all that rays meet leads to one background of one colour, and changes nothing of it.
     fn is_one_color(&self) -> Option<String> {
         let (scene, plan) = (self.scene, self.plan);
-        if scene.background.environment.is_some() || scene.image.transparent {
+        if plan.wave.background.environment != NONE || scene.image.transparent {
             return None;
         }
         let is_black = scene.background.color == [0.0; 3];

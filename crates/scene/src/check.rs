@@ -191,6 +191,15 @@ fn scalar(node: &Node, kind: &Kind, key: &Key) -> Result<(), Wrong> {
             number(node, range).map_err(|advice| wrong(format!("{advice}{}", or_default(key))))
         }
         (Kind::Vector(range), _) => elements(3, &|item| element(item, range)),
+        (Kind::Vectors(range), Value::List(items)) if items.len() == 2 => {
+            for (index, item) in items.iter().enumerate() {
+                scalar(item, &Kind::Vector(*range), key).map_err(|wrong| Wrong {
+                    within: format!("[{index}]{}", wrong.within),
+                    ..wrong
+                })?;
+            }
+            Ok(())
+        }
         (Kind::Direction, _) => {
             elements(3, &|item| element(item, &DIRECTION))?;
             let zero = node.items().iter().all(|item| as_number(item) == Some(0.0));

@@ -70,6 +70,8 @@ pub(crate) enum Kind {
     Number(Numbers),
     /// Three numbers.
     Vector(Numbers),
+    /// Two times three numbers.
+    Vectors(Numbers),
     /// Three numbers that are not all zero.
     Direction,
     /// Width and height.
@@ -196,6 +198,7 @@ impl Kind {
             }
             Kind::Number(n) => format!("a number {n}"),
             Kind::Vector(n) => format!("three numbers {n}"),
+            Kind::Vectors(n) => format!("two lists of three numbers {n}"),
             Kind::Direction => {
                 format!(
                     "a direction of three numbers from {} to {}, not all zero",

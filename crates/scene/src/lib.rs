@@ -43,7 +43,7 @@ mod reference_page;
 #[cfg(test)]
 mod tests;
 
-pub use background::{Background, ImageFile};
+pub use background::{Background, ImageFile, Sky, SunPlace};
 pub use camera_keys::{CameraKeys, ViewFrom, camera_keys_set};
 pub use color_map::{ColorMap, Scale};
 pub use error::SceneError;

@@ -116,6 +116,9 @@ fn kind(of: &Kind, path: &str) -> Map<String, Json> {
         Kind::Vector(range) => as_map(json!({
             "type": "array", "items": number(range), "minItems": 3, "maxItems": 3,
         })),
+        Kind::Vectors(range) => as_map(json!({
+            "type": "array", "items": kind(&Kind::Vector(*range), path), "minItems": 2, "maxItems": 2,
+        })),
         Kind::Direction => as_map(json!({
             "type": "array", "items": number(&DIRECTION), "minItems": 3, "maxItems": 3,
             "not": { "items": { "const": 0 } },
@@ -151,7 +154,10 @@ impl Kind {
     fn unit(&self) -> Option<&'static str> {
         match self {
             Kind::Integer { unit, .. } => Some(*unit),
-            Kind::Number(range) | Kind::Vector(range) | Kind::Pair(range) => Some(range.unit),
+            Kind::Number(range)
+            | Kind::Vector(range)
+            | Kind::Vectors(range)
+            | Kind::Pair(range) => Some(range.unit),
             Kind::Size { .. } => Some("pixels"),
             Kind::Either(kinds) => kinds.iter().find_map(Kind::unit),
             _ => None,

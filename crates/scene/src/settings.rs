@@ -1,5 +1,6 @@
 //! A scene as canonical TOML, for the header of the pictures it makes.
 
+use crate::background::write_background;
 use crate::light::write_light;
 use crate::object::write_object;
 use crate::render_settings::write_render;
@@ -34,17 +35,7 @@ impl Scene {
         }
         writeln!(out, "transparent = {}\n", self.image.transparent)?;
         write_render(out, &self.render)?;
-        writeln!(out, "[background]")?;
-        match &self.background.environment {
-            Some(image) => {
-                writeln!(out, "environment = {}", quoted(&image.as_written))?;
-                writeln!(out, "rotate = {:?}", self.background.rotate)?;
-            }
-            None => writeln!(out, "color = {:?}", self.background.color)?,
-        }
-        if let Some(lights) = self.background.lights {
-            writeln!(out, "lights = {lights}")?;
-        }
+        write_background(out, &self.background)?;
         for light in &self.lights {
             write_light(out, light)?;
         }

@@ -111,6 +111,30 @@ fn images_that_a_scene_is_made_from_have_their_hashes() {
     assert_eq!(a.len(), b.len());
 }
 
+/// The header has the sky, not what it looked like, and the camera whose up it was turned by; what is rendered from it is
+/// the same to the bit. Under the integrator "direct" its sun is no light.
+#[test]
+fn skies_and_gradients_are_rendered_again() {
+    let folder = Folder::new();
+    folder.write("ball.ply", &sphere(300));
+    for (background, stated) in [
+        ("background.sky={ elevation = 20, ground = 0.5 }", "[background.sky]\nelevation = 20.0\n"),
+        ("background.sky.sun=[1, 1, 1]", "[background.sky]\nsun = [1.0, 1.0, 1.0]\n"),
+        (
+            "background.gradient=[[0, 0, 0], [1, 2, 3]]",
+            "gradient = [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]]\n",
+        ),
+    ] {
+        render(&folder, &["ball.ply", "--up", "z", "--set", background, "-o", "a.exr"]);
+        let scene = &strings(&folder, "a.exr")["pointillist/scene"];
+        assert!(scene.contains(stated) && scene.matches("[[lights]]").count() == 2, "{scene}");
+        render(&folder, &["a.exr", "-o", "b.exr"]);
+        run_in(folder.path(), &["compare", "a.exr", "b.exr", "--max-abs", "0"]).succeeds();
+    }
+    let below = ["render", "ball.ply", "--set", "background.sky.sun=[1, -1, 0]", "-o", "c.exr"];
+    run_in(folder.path(), &below).fails_with(2, &["background.sky.sun", "45.00 degrees below"]);
+}
+
 #[test]
 fn info_of_a_picture_tells_windows_channels_and_provenance() {
     let folder = Folder::new();

@@ -34,7 +34,7 @@ const VOLUME: &str = "objects.1.volume={ scalar = 'heat', radius = 0.5, step = 0
                       extinction = [0.5, 3.0] }";
 
 /// Options, one a line; all but those that begin with a dash are `--set`.
-const FEATURES: [&str; 15] = [
+const FEATURES: [&str; 17] = [
     "",
     "--samples 3\nimage.filter=box\ncamera.aperture=0.2\nlights.0.angle=5\nlights.1.radius=0.3\nrender.seed=7",
     "--crop 5,3,20,17\n--channels point,tests,cells,iterations,trust,fit",
@@ -43,6 +43,8 @@ const FEATURES: [&str; 15] = [
     "render.fresnel=sample\nobjects.0.material={ kind = 'glass', ior = [1.4, 1.5, 1.6], priority = 1 }\n--samples 2",
     "objects.0.material={ kind = 'glass', abbe = 30.0 }\nobjects.1.material={ kind = 'mirror' }\nrender.max_bounces=3",
     "background={ environment = 'sky.png' }\nobjects.1.material={ kind = 'mirror', reflectance = [0.9, 0.8, 0.7] }",
+    "background={ sky = { elevation = 10, ground = [0.3, 0.2, 0.1] } }\ncamera.up=[1, 0, 0]\nobjects.1.material.kind=mirror",
+    "background={ gradient = [[0.1, 0.1, 0.2], [0.5, 0.6, 0.9]] }\nobjects.0.material.kind=glass",
     "objects.0.material={ texture = 'sky.png', texture_axis = 'z' }\nobjects.1.material.albedo=attribute:heat",
     "objects.0.surface={ refine = 'project', neighbors = 12, polynomial = 'incomplete' }",
     "objects.0.surface={ close_gaps = false, normals = 'polynomial', feature_size = 0.4, drop_isolated = 3.0 }",

@@ -21,7 +21,7 @@ fn attributes_have_a_map_and_their_own_range_if_none_is_given() {
 
 #[test]
 fn colors_that_exclude_each_other_are_errors() {
-    let cases: [(&[&str], &str); 9] = [
+    let cases: [(&[&str], &str); 16] = [
         (
             &["objects.0.material.albedo=[1, 1, 1]", "objects.0.material.texture=a.png"],
             "objects[0].material.texture: found both albedo and texture",
@@ -29,6 +29,32 @@ fn colors_that_exclude_each_other_are_errors() {
         (
             &["background.color=[1, 1, 1]", "background.environment=a.exr"],
             "background.environment: found both color and environment",
+        ),
+        (
+            &["background.sky={}", "background.environment=a.exr"],
+            "background.sky: found both environment and sky, expected one of them; remove one",
+        ),
+        (
+            &["background.sky={}", "background.color=[0, 0, 0]"],
+            "background.sky: found both color and sky",
+        ),
+        (
+            &["background.gradient=[[0, 0, 0], [1, 1, 1]]", "background.sky={}"],
+            "background.gradient: found both sky and gradient",
+        ),
+        (
+            &["background.sky={}", "background.rotate=[0, 90, 0]"],
+            "background.rotate: found angles, expected none without environment, which they turn; turn the sky by \
+             sky.azimuth",
+        ),
+        (
+            &["background.sky={ sun = [0, 1, 0], azimuth = 3 }"],
+            "background.sky.azimuth: found both sun and azimuth",
+        ),
+        (&["background.sky.sun=[0, 1e-200, 0]"], "background.sky.sun: found a length of 1e-200"),
+        (
+            &["background.gradient=[[0, 0, 0], [1, -1, 1]]"],
+            "background.gradient[1][1]: found -1, expected a number from 0 to 1e15",
         ),
         (&["objects.0.material.texture_axis=x"], "there is none; add texture, or remove it"),
         (

@@ -26,7 +26,9 @@ fn unknown_keys_name_the_place_and_the_nearest_key() {
 fn unknown_keys_far_from_any_list_the_known_and_name_another_tables() {
     let error_far = error_with(FULL, &["background.zzzzzz=1"]);
     assert!(
-        error_far.ends_with("unknown key; [background] has color, environment, rotate, lights"),
+        error_far.ends_with(
+            "unknown key; [background] has color, environment, rotate, sky, gradient, lights"
+        ),
         "{error_far}"
     );
     let error = error_with(FULL, &["render.size=[1, 1]"]);

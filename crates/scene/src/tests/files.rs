@@ -119,6 +119,10 @@ fn a_point_file_takes_an_environment() {
     let set = format!("background.environment={}", sky.display());
     let scene = Scene::for_point_file(&points, Up::Y, &[set]).unwrap();
     assert_eq!(scene.background.environment.map(|image| image.path), Some(sky));
+    for made in ["background.sky={}", "background.gradient=[[0, 0, 0], [1, 1, 1]]"] {
+        let scene = Scene::for_point_file(&points, Up::Y, &[made.to_owned()]).unwrap();
+        assert!(scene.background.sky.is_some() || scene.background.gradient.is_some());
+    }
 }
 
 /// A missing image is found before points are read, at its line.

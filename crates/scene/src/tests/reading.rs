@@ -46,6 +46,8 @@ fn every_built_key_is_read() {
             color: [0.1, 0.2, 1e-7],
             environment: None,
             rotate: [0.0; 3],
+            sky: None,
+            gradient: None,
             lights: Some(false)
         }
     );
@@ -409,4 +411,20 @@ fn not_built_list_names_keys_that_exist() {
             }
         }
     }
+}
+
+/// The sun from the right, behind whoever looks along the middle of the panorama; grey ground in three equal channels.
+#[test]
+fn a_sky_has_defaults_and_a_grey_ground_is_one_number() {
+    let sky = |set: &str| read_with(SMALL, &[set]).unwrap().background.sky.unwrap();
+    let expected = Sky {
+        sun: SunPlace::Angles { elevation: 45.0, azimuth: 135.0 },
+        sun_angle: 0.53,
+        turbidity: 3.0,
+        ground: [0.2; 3],
+    };
+    assert_eq!((sky("background.sky={}"), Sky::default()), (expected, expected));
+    assert_eq!(sky("background.sky.ground=0.5").ground, [0.5; 3]);
+    assert_eq!(sky("background.sky.ground=[0, 0.5, 1]").ground, [0.0, 0.5, 1.0]);
+    assert_eq!(sky("background.sky.sun=[0, 2, 0]").sun, SunPlace::Towards([0.0, 2.0, 0.0]));
 }

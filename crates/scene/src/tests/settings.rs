@@ -59,6 +59,10 @@ fn settings_state_every_built_key() {
     // Instead of the colour that FULL has.
     let sky = read(&format!("background.environment = \"sky.exr\"\n{SMALL}"));
     settings += &sky.unwrap().settings_toml();
+    // Instead of that, and the sun's direction instead of its angles.
+    for made in ["sky={}", "sky.sun=[0, 1, 0]", "gradient=[[0, 0, 0], [1, 1, 1]]"] {
+        settings += &read_with(SMALL, &[&format!("background.{made}")]).unwrap().settings_toml();
+    }
     // Instead of a volume along the way.
     let iso = "[objects.volume]\nscalar = \"s\"\nmode = \"isosurface\"\niso = 0.5\n";
     settings += &read(&format!("{SMALL}{iso}")).unwrap().settings_toml();
@@ -143,4 +147,22 @@ fn the_background_lights_where_it_can() {
     assert_eq!(with(&["background.lights=false"]).ok(), Some(false));
     let error = error_with(SMALL, &["background.lights=true"]);
     assert!(error.contains("background.lights: found true, expected false where"), "{error}");
+}
+
+/// Skies and gradients come back to the bit, the sun as it was said.
+#[test]
+fn backgrounds_that_are_made_are_written_and_read_again() {
+    for set in [
+        "sky={}",
+        "sky={ sun = [0.1, 2.0, -3.0], sun_angle = 0, turbidity = 1, ground = [0.1, 0.2, 0.3] }",
+        "sky={ elevation = 3, azimuth = -120.5, sun_angle = 10, turbidity = 9.75, ground = 0.25 }",
+        "gradient=[[0.1, 0.2, 0.3], [1, 2.5, 1e-7]]",
+    ] {
+        let scene =
+            read_with(SMALL, &[&format!("background.{set}"), "render.integrator=sky"]).unwrap();
+        assert!(scene.background.sky.is_some() != scene.background.gradient.is_some());
+        let lit = read_with(&scene.settings_toml(), &["background.lights=true"]).unwrap();
+        assert_eq!(lit.background, Background { lights: Some(true), ..scene.background.clone() });
+        assert_eq!(read(&scene.settings_toml()), Ok(scene));
+    }
 }
