@@ -118,7 +118,7 @@ void main() {
             hits[at].normal = met.normal;
         }
     }
-    vec3 background = params.transparent != 0u ? vec3(0.0) : background_at(params.background, d);
+    vec3 background = params.transparent != 0u ? vec3(0.0) : seen_at(params.background, d);
     vec3 behind = found ? vec3(0.0) : vec3(0.0) + background;
     write_first(pixel.y * params.tile_size.x + pixel.x, vec4(behind, found ? 1.0 : 0.0), !is_lit, found,
                 vec4(met.position, ray.hit_t * dot3(d, params.forward)),

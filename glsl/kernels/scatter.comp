@@ -4,6 +4,8 @@
 // reads   the ray state, hits, objects, polynomials, paths
 //         scattering_rays  the rays that hit a surface that sends rays on
 //         images, texels   the environment
+//         environment_table    where that is bright, and
+//         grid, cells, slots, colors   the values of points around a hit, where light goes from surface to surface
 //         next_marks       which of a wave's rays make one ray or three
 //         next_offsets     where those of each 32 rays begin
 // writes  the ray state, next_paths   the next wave
@@ -22,7 +24,8 @@
 #include "stages/rays.glsl"
 #include "stages/wave.glsl"
 #include "stages/film.glsl"
-#include "environment.glsl"
+#include "sky.glsl"
+#include "albedo.glsl"
 #include "math.glsl"
 #include "state.glsl"
 #include "index.glsl"
@@ -30,7 +33,7 @@
 layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = FILM) buffer Film { FilmPixel film[]; };
 layout(std430, binding = NEXT_PATHS) writeonly buffer NextPaths { Path next_paths[]; };
-layout(std430, binding = TALLY) buffer Tally { uint dark_count; uint reflected_count; };
+layout(std430, binding = TALLY) buffer Tally { uint dark_count; uint reflected_count; uint scattered_count; };
 layout(push_constant) uniform Push { WaveParams params; };
 #include "path.glsl"
 #include "media.glsl"
@@ -62,10 +65,28 @@ void store_path(uint to, uint from, Path path, vec3 throughput, uint channels, b
     } else {
         next_paths[to].media[0] = count > 0u ? media_word(from, 0u) : object;
     }
-    if (scene_has(SCENE_VOLUMES)) {
-        next_paths[to].emitted = path.emitted;
-        next_paths[to].depth = path.depth;
+    if (keeps_depths()) next_paths[to].emitted = path.emitted;
+    if (keeps_depths() || lighting_has(LIGHTING_PATH)) next_paths[to].depth = path.depth;
+}
+
+// Of a path that light takes from surface to surface: what it is after a surface sent it on, as which of its flags say, and
+// the share of the background that it counts from now on; what it asks the lamps for, others do not find.
+void go_on(inout Path path, inout uint how, inout vec3 throughput, Place place, Sent sent, Fate fate, Hit hit, uint slot) {
+    bool scattered = (path.channels & uint(PATH_SCATTERED)) != 0u;
+    if (fate.passes) return;
+    how = (how & ~uint(PATH_SCATTERED)) | (scattered ? uint(PATH_INDIRECT) : 0u);
+    path.depth = 1.0;
+    if (!fate.lit) return;
+    how |= uint(PATH_SCATTERED);
+    float own = lobe_density(place, sent.direction);
+    float share = lighting_has(LIGHTING_SKY) ? 1.0 : 0.0;
+    if (lighting_has(LIGHTING_TABLE)) {
+        float both = own + density_of(params.background, sent.direction);
+        share = both > 0.0 ? own / (both > 0.0 ? both : 1.0) : 0.0;
     }
+    path.depth = share;
+    float survival = survival_of(path.throughput, path.channels, path.bounces);
+    throughput *= albedo_at(place.object, slot, hit.position) / survival;
 }
 
 // The ray of these channels, which is the `to`th of the next wave where it goes on.
@@ -79,15 +100,22 @@ void send(uint ray, Path path, Place place, Fate fate, Hit hit, uint slot, uint 
         }
     }
     vec3 throughput = path.throughput * sent.weight;
+    if (lighting_has(LIGHTING_PATH)) go_on(path, how, throughput, place, sent, fate, hit, slot);
     if (goes_on) {
         store_path(to, ray, path, throughput, how, !fate.passes, !sent.reflects, place.object, fate.crossing.place);
         store_ray(to, new_ray(hit.position, sent.direction, slot));
-        if (sent.reflects) atomicAdd(reflected_count, 1u);
+        bool scatters = lighting_has(LIGHTING_PATH) && fate.lit;
+        if (scatters) atomicAdd(scattered_count, 1u);
+        if (sent.reflects && !scatters) atomicAdd(reflected_count, 1u);
     } else {
         how |= sent.reflects ? uint(PATH_REFLECTED) : 0u;
         bool left_out = leaves_out(params.transparent, false, how);
-        vec3 seen = left_out ? vec3(0.0) : background_at(params.background, sent.direction);
-        write_channels(path.pixel, how, path.emitted + through_volumes(path, throughput * seen));
+        vec3 seen = left_out ? vec3(0.0) : seen_at(params.background, sent.direction);
+        vec3 brought = path.emitted + through_volumes(path, throughput * seen);
+        if (lighting_has(LIGHTING_CLAMP)) {
+            brought = (how & uint(PATH_INDIRECT)) != 0u ? limited(how, brought) : brought;
+        }
+        write_channels(path.pixel, how, brought);
         bool refracted = (how & uint(PATH_REFLECTED)) == 0u;
         write_alpha(path.pixel, how, refracted ? alpha_of(path, throughput) : vec3(1.0));
     }

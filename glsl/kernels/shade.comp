@@ -38,5 +38,9 @@ void main() {
     vec3 light = gathered(at, path.pixel);
     vec3 albedo = albedo_at(polynomial_object_at(hit.slot), hit.slot, hit.position);
     vec3 seen = through_volumes(path, path.throughput * scattered(polynomial_object_at(hit.slot), light, albedo));
+    if (lighting_has(LIGHTING_CLAMP)) {
+        bool indirect = (path.channels & uint(PATH_SCATTERED | PATH_INDIRECT)) != 0u;
+        seen = indirect ? limited(path.channels, seen) : seen;
+    }
     write_channels(path.pixel, path.channels, path.emitted + seen);
 }

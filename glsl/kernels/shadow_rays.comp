@@ -28,7 +28,7 @@ layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = LIGHTS) readonly buffer Lights { Light lights[]; };
 layout(std430, binding = FILM) buffer Film { FilmPixel film[]; };
 layout(std430, binding = LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
-layout(std430, binding = TALLY) buffer Tally { uint dark_count; uint reflected_count; };
+layout(std430, binding = TALLY) buffer Tally { uint dark_count; uint reflected_count; uint scattered_count; };
 layout(push_constant) uniform Push { WaveParams params; };
 #include "film.glsl"
 #include "gather.glsl"
@@ -48,7 +48,9 @@ void main() {
     vec2 place = vec2(0.5); // of a light: its centre, unless it is sampled
     if (scene_has(SCENE_SAMPLES)) {
         uvec2 pixel = params.tile_origin + uvec2(tile_at % params.tile_size.x, tile_at / params.tile_size.x);
-        vec2 drawn = sample_2d(pixel, params.sample_index, params.seed, uint(SAMPLE_LIGHT) + params.light);
+        uint dimension = uint(SAMPLE_LIGHT) + params.light;
+        if (lighting_has(LIGHTING_PATH)) dimension += uint(SAMPLES_A_BOUNCE) * path_of(ray).bounces;
+        vec2 drawn = sample_2d(pixel, params.sample_index, params.seed, dimension);
         place = params.sample_index == NONE ? place : drawn; // of the pixel's centre: the centre
     }
     LightSample light = sample_light(lights[params.light], hit.position, place);

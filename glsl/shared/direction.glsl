@@ -16,6 +16,17 @@ vec3 about_axis(vec3 axis, vec2 s, float cosine) {
     return (s.x * first + s.y * second) + cosine * axis;
 }
 
+#define TURN 6.28318531
+
+// Cosine and sine of an angle in turns, 0 to 1.
+vec2 on_circle(float turns) {
+    float quarters = floor(4.0 * turns + 0.5);
+    float rest = (turns - 0.25 * quarters) * TURN;
+    float s = sin_octant(rest), c = cos_octant(rest);
+    uint quarter = uint(quarters) & 3u;
+    return quarter == 0u ? vec2(c, s) : (quarter == 1u ? vec2(-s, c) : (quarter == 2u ? vec2(-c, -s) : vec2(s, -c)));
+}
+
 // The outer corners of the square, which are the lower half of the octahedron, are folded inwards, and back.
 vec2 folded(vec2 p) {
     return (1.0 - abs(p.yx)) * vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);

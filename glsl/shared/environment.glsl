@@ -30,6 +30,24 @@ vec3 turned(uint at, vec3 direction) {
                 dot3(uintBitsToFloat(uvec3(z.first, z.width, z.height)), direction));
 }
 
+// And back: what one of the environment's own frame is in the world.
+vec3 turned_back(uint at, vec3 own) {
+    ImageInfo x = images[at + 1u], y = images[at + 2u], z = images[at + 3u];
+    return (own.x * uintBitsToFloat(uvec3(x.first, x.width, x.height))
+        + own.y * uintBitsToFloat(uvec3(y.first, y.width, y.height)))
+        + own.z * uintBitsToFloat(uvec3(z.first, z.width, z.height));
+}
+
+// What is seen of the sun in a direction of the world.
+vec3 sun_at(uint at, vec3 direction) {
+    ImageInfo place = images[at + uint(IMAGES_OF_TURN) + 1u], light = images[at + uint(IMAGES_OF_TURN) + 2u];
+    vec3 towards = uintBitsToFloat(uvec3(place.first, place.width, place.height));
+    vec3 off = cross3(towards, direction);
+    bool within = dot3(towards, direction) > 0.0 && dot3(off, off) <= uintBitsToFloat(place.format);
+    return within ? uintBitsToFloat(uvec3(light.first, light.width, light.height)) : vec3(0.0);
+}
+
+// The background without its sun.
 vec3 background_at(BackgroundInfo background, vec3 direction) {
     vec3 color = background.color;
     if (scene_has(SCENE_ENVIRONMENT)) {
@@ -38,5 +56,12 @@ vec3 background_at(BackgroundInfo background, vec3 direction) {
         color = environment(images[background.environment], own);
     }
     return color;
+}
+
+// With its sun.
+vec3 seen_at(BackgroundInfo background, vec3 direction) {
+    vec3 seen = background_at(background, direction);
+    if (lighting_has(LIGHTING_SUN)) seen += sun_at(background.environment, direction);
+    return seen;
 }
 #endif

@@ -17,9 +17,12 @@ bool leaves_out(uint transparent, bool from_camera, uint channels) {
     return transparent != 0u && (from_camera || (transparent == uint(TRANSPARENT_GLASS) && refracted));
 }
 
-// The channels that a path carries; with PATH_ADDS among them, to what lit surfaces on its way have written.
+// The channels that a path carries; with PATH_ADDS among them, to what lit surfaces on its way have written. Where light
+// goes from surface to surface, all that comes is added to what the camera's ray has written.
 void write_channels(uint pixel, uint channels, vec3 radiance) {
-    if (scene_has(SCENE_GLOSSY)) {
+    if (lighting_has(LIGHTING_PATH)) {
+        radiance += film[pixel].color.xyz;
+    } else if (scene_has(SCENE_GLOSSY)) {
         if ((channels & uint(PATH_ADDS)) != 0u) radiance += film[pixel].color.xyz;
     }
     if ((channels & 1u) != 0u) film[pixel].color.x = radiance.x;

@@ -12,6 +12,7 @@
 #include "sampler.glsl"
 
 #define LEAST_COSINE 1e-3 // between a place and the centre, as weights see it: the widest lights alone
+#define PI 3.14159265
 #define MOST_LIGHT 1e30 // so that nothing overflows next to a light
 
 struct LightSample {
@@ -50,5 +51,27 @@ LightSample sample_light(Light light, vec3 x, vec2 u) {
     bool dark = divisor <= 0.0;
     vec3 arriving = (light.strength / (dark ? 1.0 : divisor)) / max(cosine, LEAST_COSINE);
     return LightSample(towards, is_point ? entry : NO_HIT, dark ? vec3(0.0) : min(arriving, vec3(MOST_LIGHT)));
+}
+
+#define LEAST_EXTENT 1e-12 // squared, of what rays may meet
+
+// The radiance of a light with an extent, where a ray meets it before `end`; 0 where it does not, and of all other lights.
+// Places of it are as bright from any side that sees them, as the mean of `sample_light` has it.
+vec3 met_of(Light light, vec3 origin, vec3 direction, float end) {
+    bool is_point = light.kind == LIGHT_POINT;
+    float square_extent = light.extent * light.extent;
+    bool has_extent = square_extent > LEAST_EXTENT && (is_point || light.kind == LIGHT_DIRECTIONAL);
+    vec3 axis = is_point ? light.vector - origin : light.vector;
+    float square = dot3(axis, axis);
+    float along = dot3(axis, direction);
+    vec3 off = cross3(axis, direction);
+    float square_off = dot3(off, off);
+    bool within = square <= square_extent;
+    float half_chord = sqrt(max(square_extent - square_off, 0.0));
+    float entry = is_point ? (within ? along + half_chord : along - half_chord) : NO_HIT;
+    bool meets = has_extent && square_off <= square_extent && (along > 0.0 || (is_point && within));
+    bool before = is_point ? entry < end : end >= NO_HIT;
+    float area = PI * (has_extent ? square_extent : 1.0);
+    return meets && before ? light.strength / area : vec3(0.0);
 }
 #endif

@@ -6,6 +6,7 @@
 // sends rays without weight; the test `every_kind_has_its_case_on_both_sides` finds it first.
 #ifndef MATERIAL_GLSL
 #define MATERIAL_GLSL
+#include "direction.glsl"
 #include "stages/scene.glsl"
 #include "stages/wave.glsl"
 #include "media.glsl"
@@ -41,6 +42,14 @@ Fate fate_at(uint object, Media media, uint way, uint channels) {
     return fate;
 }
 
+// The chance that a path with this throughput goes on.
+float survival_of(vec3 throughput, uint channels, uint bounces) {
+    float red = (channels & 1u) != 0u ? throughput.x : 0.0;
+    float green = (channels & 2u) != 0u ? throughput.y : 0.0;
+    float blue = (channels & 4u) != 0u ? throughput.z : 0.0;
+    return bounces < uint(FIRST_CHANCE) ? 1.0 : min(max(max(red, green), blue), 1.0);
+}
+
 // How many rays go on after so many bounces and crossings.
 uint rays_on(Fate fate, uint bounces, uint crossings, uint max_bounces) {
     bool spent = fate.passes ? crossings >= uint(MOST_CROSSINGS) : bounces >= max_bounces;
@@ -50,20 +59,23 @@ uint rays_on(Fate fate, uint bounces, uint crossings, uint max_bounces) {
 // Where a ray meets a surface.
 struct Place {
     vec3 d;      // the ray's direction
-    vec3 normal; // of the surface, facing the ray's origin
+    vec3 normal; // of the surface, facing the ray's origin; in a cloud, the colour there
     uint object;
 };
 
 // The numbers of a pixel's sample that decide what happens at a bounce.
 struct Drawn {
     float chance; // under it, glass reflects
+    vec2 place;   // in the unit square: where scattered light goes
 };
 
 Drawn drawn_at(uvec2 pixel, uint sample_index, uint seed, uint bounce) {
     uint index = sample_index == NONE ? 0u : sample_index;
     float chance = 0.0;
     if (scene_has(SCENE_CHANCE)) chance = sample_1d(pixel, index, seed, uint(SAMPLE_FRESNEL) + bounce);
-    return Drawn(chance);
+    vec2 place = vec2(0.0);
+    if (lighting_has(LIGHTING_PATH)) place = sample_2d(pixel, index, seed, uint(SAMPLE_SCATTER) + bounce);
+    return Drawn(chance, place);
 }
 
 // A ray that goes on from a surface.
@@ -73,6 +85,7 @@ struct Sent {
     bool reflects; // it stays on the side that it came from
 };
 
+#include "materials/cloud.glsl"
 #include "materials/diffuse.glsl"
 #include "materials/glass.glsl"
 #include "materials/mirror.glsl"
@@ -82,6 +95,8 @@ Sent sent_on(Place place, Fate fate, uint channels, Drawn drawn) {
     switch (object_material_at(place.object)) {
     case uint(MATERIAL_MIRROR): return mirror_sends(place);
     case uint(MATERIAL_GLASS): return glass_sends(place, fate, channels, drawn);
+    case uint(MATERIAL_MATTE): return matte_sends(place, drawn);
+    case uint(MATERIAL_CLOUD): return cloud_sends(place, drawn);
     }
     return Sent(place.d, vec3(0.0), false);
 }
@@ -92,6 +107,8 @@ vec3 lobe(Place place, vec3 towards) {
     if (!scene_has(SCENE_GLOSSY)) return diffuse_lobe(place, towards);
     switch (object_material_at(place.object)) {
     case uint(MATERIAL_DIFFUSE): return diffuse_lobe(place, towards);
+    case uint(MATERIAL_MATTE): return diffuse_lobe(place, towards);
+    case uint(MATERIAL_CLOUD): return cloud_lobe(place, towards);
     }
     return vec3(0.0);
 }
@@ -101,8 +118,32 @@ vec3 scattered(uint object, vec3 light, vec3 albedo) {
     if (!scene_has(SCENE_GLOSSY)) return diffuse_scattered(light, albedo);
     switch (object_material_at(object)) {
     case uint(MATERIAL_DIFFUSE): return diffuse_scattered(light, albedo);
+    case uint(MATERIAL_MATTE): return diffuse_scattered(light, albedo);
+    case uint(MATERIAL_CLOUD): return albedo * light;
     }
     return vec3(0.0);
+}
+
+// A direction that light comes from, drawn by how a lit surface scatters, for u in the unit square.
+vec3 lobe_direction(Place place, vec2 u) {
+    if (!scene_has(SCENE_GLOSSY)) return diffuse_direction(place, u);
+    switch (object_material_at(place.object)) {
+    case uint(MATERIAL_DIFFUSE): return diffuse_direction(place, u);
+    case uint(MATERIAL_MATTE): return diffuse_direction(place, u);
+    case uint(MATERIAL_CLOUD): return cloud_direction(place, u);
+    }
+    return place.normal;
+}
+
+// How densely that draws directions around one, per steradian.
+float lobe_density(Place place, vec3 towards) {
+    if (!scene_has(SCENE_GLOSSY)) return diffuse_density(place, towards);
+    switch (object_material_at(place.object)) {
+    case uint(MATERIAL_DIFFUSE): return diffuse_density(place, towards);
+    case uint(MATERIAL_MATTE): return diffuse_density(place, towards);
+    case uint(MATERIAL_CLOUD): return cloud_density(place, towards);
+    }
+    return 0.0;
 }
 
 // Of each channel, what of light goes straight on through a surface on its way to a place inside `media`: all of it or, where

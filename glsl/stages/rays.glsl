@@ -20,6 +20,10 @@
 #define SAMPLE_LENS 1 // For the place on the lens
 #define SAMPLE_FRESNEL 2 // For what glass does with a ray: one a bounce from here on
 #define SAMPLE_LIGHT 4096 // For the place on a light: one a light from here on
+#define SAMPLE_SCATTER 8192 // For the direction that light is scattered in: one a bounce from here on
+#define SAMPLE_SURVIVAL 12288 // For whether a path goes on: one a bounce from here on
+#define SAMPLE_DISTANCE 16384 // For how far a ray comes in volumes: one a bounce from here on
+#define SAMPLES_A_BOUNCE 65536 // Numbers of a bounce, of paths that light takes from surface to surface
 
 // Push constants of camera_rays.
 struct CameraParams { // 96 bytes

@@ -1,4 +1,4 @@
-// scene: what a scene needs: the bits of the specialization constant 0 (scene.glsl). Drivers leave out what it has not.
+// scene: what a scene needs: the bits of the specialization constants 0 and 1 (scene.glsl). Drivers leave out what it has not.
 //
 // Made from crates/kernels/src/layout/scene.rs by compile-kernels: change that.
 #ifndef STAGE_SCENE_GLSL
@@ -35,4 +35,12 @@
 #define SCENE_DEPTHS 0x10000000u // Where half of the light is lost is asked for
 #define SCENE_GLOSSY 0x20000000u // Lights light a surface that scatters by another law than Lambert's, or from which rays go on
 #define SCENE_STEEP 0x40000000u // A transfer function is steep, and steps may be divided
+#define LIGHTING_TABLE 1 // Of the specialization constant 1: the background lights what rays hit, and how bright it is decides where rays look for its light
+#define LIGHTING_PATH 2 // Light goes from surface to surface
+#define LIGHTING_SKY 4 // The background lights what rays hit
+#define LIGHTING_LAMPS 8 // Rays that surfaces send on may meet lamps with an extent
+#define LIGHTING_SUN 16 // A sun stands in the background
+#define LIGHTING_CLAMP 32 // What has come over several surfaces is limited
+#define LIGHTING_SCATTERS 64 // Volumes scatter rays
+#define LIGHTING_ANISOTROPY 128 // They do so to some sides more than to others
 #endif

@@ -160,9 +160,9 @@ struct PointLightParams { // 16 bytes
     uint volume;                     //  12 Whose points they are.
 };
 
-#define VOLUMES 80 // The volumes of the scene
+#define VOLUMES 81 // The volumes of the scene
 
-#define VOLUME_CELLS 81 // Of all volumes
+#define VOLUME_CELLS 82 // Of all volumes
 #ifdef TEXELS
 layout(binding = VOLUME_CELLS) uniform usamplerBuffer volume_cell_texels;
 
@@ -193,7 +193,7 @@ uint volume_cell_counts_at(uint at) {
 }
 #endif
 
-#define VOLUME_POINTS 82 // Of all volumes
+#define VOLUME_POINTS 83 // Of all volumes
 #ifdef TEXELS
 layout(binding = VOLUME_POINTS) uniform usamplerBuffer volume_point_texels;
 
@@ -224,7 +224,7 @@ float volume_point_scalar_at(uint at) {
 }
 #endif
 
-#define VOLUME_LENGTHS 83 // 1/h by point, if any volume has particles
+#define VOLUME_LENGTHS 84 // 1/h by point, if any volume has particles
 #ifdef TEXELS
 layout(binding = VOLUME_LENGTHS) uniform usamplerBuffer inverse_length_texels;
 
@@ -239,7 +239,7 @@ float inverse_length_at(uint at) {
 }
 #endif
 
-#define VOLUME_STOPS 84 // Of all transfer functions
+#define VOLUME_STOPS 85 // Of all transfer functions
 #ifdef TEXELS
 layout(binding = VOLUME_STOPS) uniform usamplerBuffer stop_texels;
 
@@ -318,13 +318,13 @@ vec4 stop_emission_rest_at(uint at) {
 }
 #endif
 
-#define MARCHES 85 // By ray
+#define MARCHES 86 // By ray
 
-#define MARCH_ENDS 86 // The ends of steps by ray and volume, two each where steps may be divided; of lit ones four floats
+#define MARCH_ENDS 87 // The ends of steps by ray and volume, two each where steps may be divided; of lit ones four floats
 
-#define MARCH_LIGHTS 87 // By ray, where volumes are lit
+#define MARCH_LIGHTS 88 // By ray, where volumes are lit
 
-#define VISIBLE 88 // What of each light's reaches each point of a volume
+#define VISIBLE 89 // What of each light's reaches each point of a volume
 #ifdef TEXELS
 layout(binding = VISIBLE) uniform usamplerBuffer visible_texels;
 
@@ -339,5 +339,5 @@ vec4 visible_at(uint at) {
 }
 #endif
 
-#define ISO_SEARCHES 89 // By ray
+#define ISO_SEARCHES 90 // By ray
 #endif

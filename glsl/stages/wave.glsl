@@ -13,10 +13,15 @@
 #define MATERIAL_DIFFUSE 256 // ObjectInfo.material of Lambert's law: the number of the kind, and its bits
 #define MATERIAL_MIRROR 513 // ObjectInfo.material of a perfect mirror
 #define MATERIAL_GLASS 1538 // ObjectInfo.material of smooth glass
+#define MATERIAL_MATTE 771 // ObjectInfo.material of Lambert's law where light goes on from surface to surface
+#define MATERIAL_CLOUD 772 // Of a volume that scatters light where it goes on
 #define MOST_CROSSINGS 1024 // Surfaces that a path may pass through that do not change its medium
 #define CHANNELS_ALL 7 // Path.channels of a ray that carries all three
 #define PATH_REFLECTED 8 // Bit beside them: the path was reflected somewhere
 #define PATH_ADDS 16 // Bit: surfaces on its way were lit, so that what it brings is added to what the pixel has
+#define PATH_SCATTERED 32 // Bit: the last thing on its way scattered it to all sides, and has asked the lamps and, by its brightness, the background for light
+#define PATH_INDIRECT 64 // Bit: something on its way before the last did
+#define FIRST_CHANCE 2 // Paths may end by chance from this bounce on
 #define TRANSPARENT_CAMERA 1 // WaveParams.transparent: camera rays leave the background out
 #define TRANSPARENT_GLASS 2 // WaveParams.transparent: and so do rays that were only refracted
 #define WAVE_FROM_CAMERA 1 // WaveParams.flags: rays come from the camera
@@ -27,6 +32,10 @@
 #define IMAGE_LINEAR 1 // An image of red, green, blue as three floats, linear
 #define LIGHT_DIRECTIONAL 0 // A light infinitely far away
 #define LIGHT_POINT 1 // A light at a point
+#define LIGHT_SKY 2 // The background, whose light surfaces look for by how they scatter it
+#define LIGHT_ENVIRONMENT 3 // The same by how bright it is
+#define LIGHT_SUN 4 // As directional, the sun in the background, which rays that are not scattered see there
+#define IMAGES_OF_TURN 3 // Of the images after an environment: three rows of the matrix that turns it, and two of its sun: the direction towards it and the square of the sine of its radius; its radiance
 
 // What rays that hit nothing see.
 struct BackgroundInfo { // 16 bytes
@@ -51,7 +60,7 @@ LitHit lit_hit_from(usamplerBuffer texels, int first) {
 #endif
 
 // Push constants of the kernels that scatter and shade the rays of a wave.
-struct WaveParams { // 80 bytes
+struct WaveParams { // 96 bytes
     vec3 forward;                    //   0 Unit vector of the viewing axis.
     uint ray_count;                  //  12 Rays of the wave; for shadow_rays and shade, hits on lit surfaces.
     BackgroundInfo background;       //  16 What rays that hit nothing see.
@@ -65,6 +74,8 @@ struct WaveParams { // 80 bytes
     uint light_count;                //  68 Lights of the scene.
     uint sample_index;               //  72 Which sample of each pixel; NONE where there is only one, and lights have no extent.
     uint transparent;                //  76 What leaves the background out: one of TRANSPARENT_*, or 0 for nothing.
+    float clamp;                     //  80 The most radiance of what has come over several surfaces.
+    uint pad[3];                     //  84 Unused.
 };
 
 // Push constants of camera_trace.
@@ -103,7 +114,7 @@ struct ObjectInfo { // 112 bytes
     uint max_iterations;             //  24 Of the refinement; 0: hits are taken as they are.
     float tolerance;                 //  28 Of the refinement, over h.
     uint slot_count;                 //  32 Slots that carry the object's surface; its spheres and discs come after these.
-    float weight_scale;              //  36 h over the width of the weights.
+    float weight_scale;              //  36 h over the width of the weights; of a cloud, the mean cosine of the angle that it scatters by.
     uint blends;                     //  40 1: normals are blended over the polynomials around a hit.
     uint texture;                    //  44 An image, or NONE.
     vec4 texture_u;                  //  48 Column over width at x is dot(xyz, x) + w, where points have no places in the texture.
@@ -139,13 +150,13 @@ struct Light { // 32 bytes
 struct Path { // 80 bytes
     vec3 throughput;                 //   0 What of the light it finds arrives at the pixel.
     uint pixel;                      //  12 Pixel of the tile, row by row; NONE: no ray at all.
-    uint channels;                   //  16 Bits of CHANNELS_ALL: 1 red, 2 green, 4 blue; and PATH_REFLECTED, PATH_ADDS.
+    uint channels;                   //  16 Bits of CHANNELS_ALL: 1 red, 2 green, 4 blue; and PATH_*.
     uint bounces;                    //  20 Interactions with surfaces so far.
     uint crossings;                  //  24 Surfaces passed through so far that did not change its medium.
     uint media_count;                //  28 Objects that it is inside.
     uint media[8];                   //  32 Those, 16 bits each, in no order.
     vec3 emitted;                    //  64 What volumes on its way have sent to the pixel.
-    float depth;                     //  76 Optical depth of the volumes on its way so far, which is no part of the throughput.
+    float depth;                     //  76 Optical depth of the volumes on its way so far, which is no part of the throughput. Where light goes from surface to surface it is; then this is the share of the background that the path counts (LIGHTING_PATH).
 };
 
 #ifdef TEXELS
@@ -535,4 +546,6 @@ int object_priority_at(uint at) {
 #define IMAGES 78 // Textures and the environment
 
 #define TEXELS_OF_IMAGES 79 // A table of sRGB, and the texels of all images
+
+#define ENVIRONMENT_TABLE 80 // Where the environment is bright
 #endif

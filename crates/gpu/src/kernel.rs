@@ -4,7 +4,7 @@ use crate::access::Access;
 use crate::device::Device;
 use crate::error::GpuError;
 use crate::next_id;
-use crate::pipelines::{Pipeline, PipelineKey};
+use crate::pipelines::{Constants, Pipeline, PipelineKey};
 use crate::spirv::{Reflection, ResourceKind};
 use ash::vk;
 use kernels::layout;
@@ -141,8 +141,8 @@ impl Source {
 }
 
 impl Kernel {
-    /// A kernel of one of the project's modules. Where that has a specialization constant 0, an integer of 32 bits,
-    /// `constant` is its value, and code that it rules out is not compiled; without one the module's own counts. What
+    /// A kernel of one of the project's modules. Where that has specialization constants 0 and 1, integers of 32 bits,
+    /// `constants` are their values, and code that these rule out is not compiled; without any the module's own count. What
     /// the driver finds wrong is an error of the submission that first uses it.
     ///
     /// # Errors
@@ -150,9 +150,9 @@ impl Kernel {
     pub fn new(
         device: &Arc<Device>,
         module: &'static Module,
-        constant: Option<u32>,
+        constants: Option<Constants>,
     ) -> Result<Self, GpuError> {
-        Self::of_source(device, Source::of(module)?, constant)
+        Self::of_source(device, Source::of(module)?, constants)
     }
 
     /// A kernel of any module, all of whose texel buffers have texels of so many values.
@@ -175,13 +175,13 @@ impl Kernel {
     fn of_source(
         device: &Arc<Device>,
         source: Arc<Source>,
-        constant: Option<u32>,
+        constants: Option<Constants>,
     ) -> Result<Self, GpuError> {
         check_limits(device, &source)?;
-        let constant = constant.filter(|_| source.module.is_specialized);
+        let constants = constants.filter(|_| source.module.is_specialized);
         let inner = KernelInner {
             pipeline: OnceLock::new(),
-            key: Arc::new(PipelineKey { source, constant }),
+            key: Arc::new(PipelineKey { source, constants }),
             id: next_id(),
             device: Arc::clone(device),
         };

@@ -43,6 +43,7 @@ pub use image::{Image, ImageFormat};
 pub use instance::{Instance, InstanceOptions};
 pub use kernel::{Kernel, Texel};
 pub use pass::{Bindings, PART_ALIGNMENT, PassBuilder};
+pub use pipelines::Constants;
 pub use recorder::{Recorder, Timings};
 
 use std::sync::atomic::{AtomicU64, Ordering};

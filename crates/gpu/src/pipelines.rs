@@ -17,12 +17,15 @@ pub(crate) struct Pipelines {
 /// A pipeline, once it is made; whoever makes it holds the lock.
 type Made = Arc<Mutex<Option<Pipeline>>>;
 
+/// Values of the specialization constants 0 and 1.
+pub type Constants = [u32; 2];
+
 /// What a pipeline is made from.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(crate) struct PipelineKey {
     pub(crate) source: Arc<Source>,
-    /// Of the specialization constant 0, where the module has one.
-    pub(crate) constant: Option<u32>,
+    /// Of the specialization constants, where the module has any.
+    pub(crate) constants: Option<Constants>,
 }
 
 /// A pipeline and what it takes to use it. Lives as long as its device.
@@ -114,15 +117,20 @@ impl Pipeline {
         let shader = unsafe { raw.create_shader_module(&info, None) }
             .map_err(GpuError::call("vkCreateShaderModule", name))?;
         device.set_name(shader, name);
-        let constant = key.constant.unwrap_or_default().to_ne_bytes();
-        let entries = [vk::SpecializationMapEntry::default().size(constant.len())];
-        let specialization =
-            vk::SpecializationInfo::default().map_entries(&entries).data(&constant);
+        let constants = key.constants.unwrap_or_default();
+        let entry = |id: u32| {
+            let entry = vk::SpecializationMapEntry::default().size(size_of::<u32>());
+            entry.constant_id(id).offset(id * size_of::<u32>() as u32)
+        };
+        let entries = [entry(0), entry(1)];
+        let specialization = vk::SpecializationInfo::default()
+            .map_entries(&entries)
+            .data(bytemuck::bytes_of(&constants));
         let stage = vk::PipelineShaderStageCreateInfo::default()
             .stage(vk::ShaderStageFlags::COMPUTE)
             .module(shader)
             .name(&module.entry);
-        let stage = match key.constant {
+        let stage = match key.constants {
             Some(_) => stage.specialization_info(&specialization),
             None => stage,
         };

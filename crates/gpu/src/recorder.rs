@@ -16,6 +16,7 @@ use crate::error::GpuError;
 use crate::image::{Image, ImageFormat};
 use crate::kernel::Kernel;
 use crate::pass::PassBuilder;
+use crate::pipelines::Constants;
 use crate::queue;
 use crate::timer::Timer;
 use ash::vk;
@@ -52,9 +53,9 @@ pub struct Recorder {
     /// Memory of passes under construction, kept for the next.
     pub(crate) push: Vec<u8>,
     pub(crate) uses: Vec<(u64, Access)>,
-    /// Kernels that passes have asked for, by module and constant.
-    kernels: HashMap<(&'static str, Option<u32>), Kernel>,
-    constant: Option<u32>,
+    /// Kernels that passes have asked for, by module and constants.
+    kernels: HashMap<(&'static str, Option<Constants>), Kernel>,
+    constants: Option<Constants>,
     #[cfg(test)]
     skip_barriers: bool,
     pub(crate) device: Arc<Device>,
@@ -78,7 +79,7 @@ impl Recorder {
             push: Vec::new(),
             uses: Vec::new(),
             kernels: HashMap::new(),
-            constant: None,
+            constants: None,
             #[cfg(test)]
             skip_barriers: false,
             device: Arc::clone(device),
@@ -100,28 +101,28 @@ impl Recorder {
         self.timer.turn(on);
     }
 
-    /// Kernels of the project's modules are specialized by this value from now on, where their modules have a constant 0.
-    pub fn specialize(&mut self, constant: u32) {
-        self.constant = Some(constant);
+    /// Kernels of the project's modules are specialized by these values from now on, where their modules have such constants.
+    pub fn specialize(&mut self, constants: Constants) {
+        self.constants = Some(constants);
     }
 
     /// Begins a pass of one of the project's modules: bind what it needs, then dispatch. The kernel's name is the pass's
     /// debug label and its row in the timings.
     pub fn pass(&mut self, module: &'static Module) -> PassBuilder<'_> {
-        self.pass_specialized(module, self.constant)
+        self.pass_specialized(module, self.constants)
     }
 
-    /// The same with a value of the specialization constant for this pass only.
+    /// The same with values of the specialization constants for this pass only.
     pub fn pass_specialized(
         &mut self,
         module: &'static Module,
-        constant: Option<u32>,
+        constants: Option<Constants>,
     ) -> PassBuilder<'_> {
-        let kernel = match self.kernels.get(&(module.name(), constant)) {
+        let kernel = match self.kernels.get(&(module.name(), constants)) {
             Some(kernel) => Some(kernel.clone()),
-            None => match Kernel::new(&self.device, module, constant) {
+            None => match Kernel::new(&self.device, module, constants) {
                 Ok(kernel) => {
-                    self.kernels.insert((module.name(), constant), kernel.clone());
+                    self.kernels.insert((module.name(), constants), kernel.clone());
                     Some(kernel)
                 }
                 Err(error) => {

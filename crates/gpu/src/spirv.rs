@@ -19,7 +19,7 @@ pub(crate) struct Reflection {
     pub(crate) resources: Vec<Resource>,
     /// Bytes of its push constants.
     pub(crate) push_bytes: usize,
-    /// Whether it has a specialization constant 0.
+    /// Whether it has a specialization constant 0 or 1.
     pub(crate) is_specialized: bool,
     /// Whether its invocations vote in subgroups.
     pub(crate) votes: bool,
@@ -234,7 +234,7 @@ impl Declarations {
             (op::DECORATE, &[id, decoration::ARRAY_STRIDE, stride]) => {
                 self.strides.insert(id, stride);
             }
-            (op::DECORATE, &[_, decoration::SPEC_ID, 0]) => self.is_specialized = true,
+            (op::DECORATE, &[_, decoration::SPEC_ID, 0 | 1]) => self.is_specialized = true,
             (op::MEMBER_DECORATE, &[id, member, decoration::OFFSET, offset]) => {
                 self.offsets.insert((id, member), offset);
             }

@@ -99,6 +99,13 @@ axes! {
         /// Shadow rays.
         Shadows = "shadows" [SHADOWS],
     }
+    /// How directions towards the background are drawn.
+    Drawing {
+        /// By how the surface scatters.
+        Lobe = "" [],
+        /// By how bright it is there.
+        Table = "table" [TABLE],
+    }
     /// Which rays look for isosurfaces.
     Searching {
         /// Those of a wave.
@@ -224,6 +231,8 @@ kernels! {
     skip_cells();
     /// Feature sizes as means over neighbours.
     smooth_sizes(lists: Lists);
+    /// Rays towards the background.
+    sky_rays(by: Drawing, rays: Rays);
     /// Stable sort by one digit, first half.
     sort_count();
     /// Stable sort by one digit, second half.

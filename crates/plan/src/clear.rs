@@ -2,9 +2,11 @@
 
 use crate::Plan;
 use crate::materials::has_inside;
-use kernels::layout::{ObjectInfo, PASSED_NEAR, VOLUME_ISOSURFACE, VolumeInfo};
+use kernels::layout::{
+    LIGHT_POINT, Light, ObjectInfo, PASSED_NEAR, VOLUME_ISOSURFACE, VolumeInfo,
+};
 use points::{Cloud, Shapes};
-use scene::Shadows;
+use scene::{Integrator, Shadows};
 
 /// Of the diagonal of an object's points: how far its surface may reach beyond their box.
 const MARGIN: f64 = 0.05;
@@ -73,6 +75,13 @@ fn box_of(object: usize, cloud: &Cloud, shapes: &[Shapes]) -> [[f64; 3]; 2] {
     [low.map(|x| x - margin), high.map(|x| x + margin)]
 }
 
+/// Whether a light may go straight on through glass. Where light goes from surface to surface, paths find those with an
+/// extent, refracted as they are, and glass blocks the straight way to them.
+pub(crate) fn shines_through(light: &Light, integrator: Integrator) -> bool {
+    let is_hard = light.extent == 0.0 && light.kind <= LIGHT_POINT;
+    integrator != Integrator::Path || is_hard
+}
+
 impl Plan {
     /// Whether glass may meet a medium of its own index.
     pub(crate) fn may_be_clear(&self) -> bool {
@@ -82,7 +91,9 @@ impl Plan {
     /// Whether light of this number goes straight on through glass, rather than only between media of one index.
     #[must_use]
     pub fn tints(&self, light: u32) -> bool {
-        self.shadows == Shadows::Tinted && (light as usize) < self.lights.len()
+        let light = self.lights.get(light as usize);
+        self.shadows == Shadows::Tinted
+            && light.is_some_and(|light| shines_through(light, self.integrator))
     }
 
     /// Whether light of this number goes on through isosurfaces, of which some are of glass.

@@ -38,7 +38,11 @@ impl Plan {
     /// surfaces, which are taken as they are.
     #[must_use]
     pub fn meets_surfaces_alone(&self) -> bool {
-        self.volumes.infos.is_empty() && self.camera_media.is_empty() && !self.refines()
+        let leaves_light = !self.follows_paths(); // else all that comes is added to what it writes
+        leaves_light
+            && self.volumes.infos.is_empty()
+            && self.camera_media.is_empty()
+            && !self.refines()
     }
 
     /// Parameters of `camera_trace` for one tile, whose rays may spend so much work.

@@ -28,6 +28,7 @@ mod header_camera;
 mod images;
 mod inside;
 mod isolated;
+mod lighting;
 mod lights;
 pub mod materials;
 mod missing;
@@ -79,11 +80,12 @@ use kernels::layout::{
     ObjectInfo, TRANSPARENT_CAMERA, TRANSPARENT_GLASS, WAVE_FROM_CAMERA, WAVE_LOSSES, WAVE_VALUES,
     WaveParams,
 };
+use lighting::SkyLight;
 use lights::local_light;
 use objects::{add_image, color_isosurfaces, fit_params, object_infos};
 use points::{Apart, Cloud, PointSet, SlotRange, Unwatched, Watch};
 use scene::{Fresnel, Scene, Up};
-pub use scene::{Primary, RayLoop, Secondary, Shadows};
+pub use scene::{Integrator, Primary, RayLoop, Secondary, Shadows};
 use std::sync::Arc;
 
 /// In place of a sample's number: the ray through a pixel's centre, where there are several samples beside it.
@@ -136,6 +138,14 @@ pub struct Plan {
     pub cleaned: Vec<Cleaned>,
     /// All lights.
     pub lights: Vec<layout::Light>,
+    /// Where light comes from.
+    pub integrator: Integrator,
+    /// The most radiance of what has come over several surfaces.
+    pub clamp: Option<f32>,
+    /// Where the environment is bright, as kernels take it, if directions are drawn by that; else empty.
+    pub environment_table: Vec<f32>,
+    sky_lights: bool,
+    shows_sun: bool,
     /// What glass does with light on its way; [`Plan::tints`] says so of each light.
     pub shadows: Shadows,
     /// Whether their light passes surfaces, of which there are some: shadow rays go on there.
@@ -299,14 +309,22 @@ impl Plan {
         let chosen_text = chosen::attribute(&found.chosen);
         let color_scales = scales::of_scene(scene, &volumes, &found.chosen);
         let scene_lights = framing::lights_for(&scene.lights, scene.key_light, &camera);
+        let lights = scene_lights.iter().map(|light| local_light(light, &camera, cloud.origin));
+        let mut lights: Vec<layout::Light> = lights.collect();
+        let sun = environment::sun_of(&scene.background, camera.up)
+            .map(|sun| lighting::sun_light(local_light(&sun, &camera, cloud.origin)));
+        if let Some(sun) = &sun {
+            list.infos.extend(lighting::sun_rows(sun));
+        }
         // The sun of a sky is a light where the background lights; headers have it in the background.
-        let sun = (scene.background_lights())
-            .then(|| environment::sun_of(&scene.background, camera.up))
-            .flatten();
-        let lights = scene_lights.iter().chain(&sun);
-        let lights: Vec<layout::Light> =
-            lights.map(|light| local_light(light, &camera, cloud.origin)).collect();
-        let shadows = scene.render.shadows;
+        lights.extend(sun.iter().filter(|_| scene.background_lights()));
+        let table = (environment != NONE)
+            .then(|| EnvironmentTable::of(&list.infos[environment as usize], &list.texels));
+        let sky = SkyLight::of(scene, table);
+        lights.extend(sky.lights(scene.render.integrator));
+        let integrator = scene.render.integrator;
+        let may_tint = lights.iter().any(|light| clear::shines_through(light, integrator));
+        let shadows = if may_tint { scene.render.shadows } else { Shadows::Opaque };
         let light_passes =
             !lights.is_empty() && clear::lets_light_pass(shadows, &objects, &cloud, &shapes);
         let lamp_media = match light_passes {
@@ -350,6 +368,8 @@ impl Plan {
                 light: 0,
                 light_count: lights.len() as u32,
                 sample_index: NONE,
+                clamp: scene.render.clamp.map_or(f32::MAX, |clamp| clamp as f32),
+                pad: [0; 3],
             },
             objects,
             colors,
@@ -359,6 +379,11 @@ impl Plan {
             cleaned: list.cleaned,
             lights,
             shadows,
+            integrator: scene.render.integrator,
+            clamp: scene.render.clamp.map(|clamp| clamp as f32),
+            environment_table: sky.table,
+            sky_lights: sky.lights,
+            shows_sun: sun.is_some_and(|sun| sun.extent > 0.0),
             light_passes,
             lamp_media,
             image_size,
@@ -438,7 +463,7 @@ impl Plan {
             media_count: self.camera_media.len() as u32,
             media,
             emitted: [0.0; 3],
-            depth: 0.0,
+            depth: if self.follows_paths() { 1.0 } else { 0.0 },
         }
     }
 

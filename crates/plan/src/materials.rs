@@ -2,17 +2,17 @@
 
 use bytemuck::Zeroable;
 use kernels::layout::{
-    MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_INSIDE, MATERIAL_LIT, MATERIAL_MIRROR,
-    MATERIAL_SENDS, ObjectInfo, SCENE_ABSORBS, SCENE_DISPERSES, SCENE_GLOSSY, SCENE_LIT,
-    SCENE_NESTED, SCENE_SCATTERS,
+    MATERIAL_CLOUD, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_INSIDE, MATERIAL_LIT,
+    MATERIAL_MATTE, MATERIAL_MIRROR, MATERIAL_SENDS, ObjectInfo, SCENE_ABSORBS, SCENE_DISPERSES,
+    SCENE_GLOSSY, SCENE_LIT, SCENE_NESTED, SCENE_SCATTERS,
 };
-use scene::{Albedo, Material, MaterialKind};
+use scene::{Albedo, Integrator, Material, MaterialKind};
 
 /// Albedo of objects whose points have no colours and whose material names none.
 pub(crate) const DEFAULT_ALBEDO: [f32; 3] = [0.8; 3];
 
 /// What kernels take of a material; nothing else of the object.
-pub(crate) fn info_of(material: &Material) -> ObjectInfo {
+pub(crate) fn info_of(material: &Material, integrator: Integrator) -> ObjectInfo {
     let f32s = |v: [f64; 3]| v.map(|x| x as f32);
     let opaque = |material: u32, albedo: [f32; 3]| ObjectInfo {
         material,
@@ -26,7 +26,8 @@ pub(crate) fn info_of(material: &Material) -> ObjectInfo {
                 Albedo::Color(color) => f32s(color),
                 _ => DEFAULT_ALBEDO,
             };
-            opaque(MATERIAL_DIFFUSE, albedo)
+            let goes_on = integrator == Integrator::Path;
+            opaque(if goes_on { MATERIAL_MATTE } else { MATERIAL_DIFFUSE }, albedo)
         }
         MaterialKind::Mirror { reflectance } => opaque(MATERIAL_MIRROR, f32s(reflectance)),
         MaterialKind::Glass { ior, priority, absorption } => ObjectInfo {
@@ -44,6 +45,11 @@ pub fn is_lit(object: &ObjectInfo) -> bool {
     object.material & MATERIAL_LIT != 0
 }
 
+/// Whether it is a volume that scatters light to some sides more than to others.
+pub(crate) fn is_uneven_cloud(object: &ObjectInfo) -> bool {
+    object.material == MATERIAL_CLOUD && object.weight_scale != 0.0
+}
+
 /// Whether rays go on from the surface.
 #[must_use]
 pub fn sends_rays_on(object: &ObjectInfo) -> bool {
@@ -59,6 +65,11 @@ pub fn has_inside(object: &ObjectInfo) -> bool {
 /// Whether rays that go on from the surface, or through its inside, lose light.
 pub(crate) fn dims(object: &ObjectInfo) -> bool {
     object.albedo != [1.0; 3] || absorbs(object)
+}
+
+/// Whether a lit surface scatters light by Lambert's law. Where that sends rays on, no kernel has to be told by a bit.
+fn is_plain(object: &ObjectInfo) -> bool {
+    [MATERIAL_DIFFUSE, MATERIAL_MATTE].contains(&object.material)
 }
 
 fn absorbs(object: &ObjectInfo) -> bool {
@@ -87,7 +98,7 @@ pub(crate) fn scene_bits(objects: &[ObjectInfo]) -> u32 {
     let bits = [
         (SCENE_LIT, any(is_lit)),
         (SCENE_SCATTERS, any(sends_rays_on)),
-        (SCENE_GLOSSY, any(|object| is_lit(object) && object.material != MATERIAL_DIFFUSE)),
+        (SCENE_GLOSSY, any(|object| is_lit(object) && !is_plain(object))),
         (SCENE_NESTED, objects.iter().filter(|object| has_inside(object)).count() > 1),
         (SCENE_DISPERSES, any(disperses)),
         (SCENE_ABSORBS, any(absorbs)),

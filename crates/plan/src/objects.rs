@@ -93,7 +93,7 @@ pub(crate) fn object_infos(
             texture,
             texture_u: rows[0],
             texture_v: rows[1],
-            ..info_of(&object.material)
+            ..info_of(&object.material, scene.render.integrator)
         });
         match values {
             PointValues::None => {}

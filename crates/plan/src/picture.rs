@@ -28,13 +28,15 @@ pub struct Rays {
     pub reflected: u64,
     /// Into and out of glass, or through a surface that changes no medium.
     pub refracted: u64,
+    /// Scattered to all sides, by matt surfaces and in volumes.
+    pub scattered: u64,
 }
 
 impl Rays {
     /// Of every kind.
     #[must_use]
     pub fn all(&self) -> u64 {
-        self.camera + self.shadow + self.reflected + self.refracted
+        self.camera + self.shadow + self.reflected + self.refracted + self.scattered
     }
 }
 
@@ -46,6 +48,7 @@ impl std::ops::Add for Rays {
             shadow: self.shadow + other.shadow,
             reflected: self.reflected + other.reflected,
             refracted: self.refracted + other.refracted,
+            scattered: self.scattered + other.scattered,
         }
     }
 }

@@ -14,6 +14,19 @@ pub(crate) fn about_axis<R: Real>(axis: V3<R>, s: [R; 2], cosine: R) -> V3<R> {
     (first.times(s[0]) + second.times(s[1])) + axis.times(cosine)
 }
 
+/// Cosine and sine of an angle in turns, 0 to 1.
+pub(crate) fn on_circle<R: Real>(turns: R) -> [R; 2] {
+    let quarters = (R::of(4.0) * turns + R::of(0.5)).floor();
+    let rest = (turns - R::of(0.25) * quarters) * R::of(std::f64::consts::TAU);
+    let (s, c) = (rest.sin_octant(), rest.cos_octant());
+    match quarters.to_u32() & 3 {
+        0 => [c, s],
+        1 => [-s, c],
+        2 => [-c, -s],
+        _ => [s, -c],
+    }
+}
+
 /// The outer corners of the square, which are the lower half of the octahedron, are folded inwards, and back.
 fn folded<R: Real>([x, y]: [R; 2]) -> [R; 2] {
     let (zero, one) = (R::of(0.0), R::of(1.0));

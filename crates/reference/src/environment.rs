@@ -2,7 +2,7 @@
 
 use crate::image::Images;
 use crate::real::{Real, V3};
-use kernels::layout::{BackgroundInfo, ImageInfo, NONE};
+use kernels::layout::{BackgroundInfo, IMAGES_OF_TURN, ImageInfo, NONE};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// The colour of an equirectangular image in a direction of any length: +y is its top row, −z its
@@ -16,7 +16,7 @@ pub fn environment<R: Real>(images: Images<'_>, image: &ImageInfo, direction: V3
     images.image_at(image, u, v, true)
 }
 
-/// The background in a direction.
+/// The background in a direction, without its sun.
 #[must_use]
 pub fn background_at<R: Real>(
     images: Images<'_>,
@@ -32,16 +32,40 @@ pub fn background_at<R: Real>(
     }
 }
 
+/// The numbers that lie in place of an image.
+fn numbers_of(info: &ImageInfo) -> [f32; 3] {
+    [info.first, info.width, info.height].map(f32::from_bits)
+}
+
+/// The rows of the matrix that turns the environment; `None` where it does not: kernels leave it out.
+fn turn_of(rows: &[ImageInfo]) -> Option<[[f32; 3]; 3]> {
+    let rows = [0, 1, 2].map(|i| numbers_of(&rows[i]));
+    (rows != [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]).then_some(rows)
+}
+
 /// What a direction of the world is in the environment's own frame.
-fn turned<R: Real>(rows: &[ImageInfo], direction: V3<R>) -> V3<R> {
-    let rows = [0, 1, 2].map(|i| {
-        let ImageInfo { first, width, height, .. } = rows[i];
-        [first, width, height].map(f32::from_bits)
-    });
-    if rows == [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
-        return direction; // no turn: kernels leave it out
+pub(crate) fn turned<R: Real>(rows: &[ImageInfo], direction: V3<R>) -> V3<R> {
+    match turn_of(rows) {
+        Some(rows) => V3(rows.map(|row| V3::of_f32(row).dot(direction))),
+        None => direction,
     }
-    V3(rows.map(|row| V3::of_f32(row).dot(direction)))
+}
+
+/// And back.
+pub(crate) fn turned_back<R: Real>(rows: &[ImageInfo], own: V3<R>) -> V3<R> {
+    let Some(rows) = turn_of(rows) else { return own };
+    let [x, y, z] = rows.map(V3::of_f32);
+    (x.times(own.x()) + y.times(own.y())) + z.times(own.z())
+}
+
+/// What is seen of the sun in a direction of the world. `at` is the environment's place among the images.
+pub(crate) fn sun_at<R: Real>(images: Images<'_>, at: u32, direction: V3<R>) -> V3<R> {
+    let [place, light] = [1, 2].map(|i| &images.infos[(at + IMAGES_OF_TURN + i) as usize]);
+    let towards = V3::of_f32(numbers_of(place));
+    let off = towards.cross(direction);
+    let within = towards.dot(direction) > R::of(0.0)
+        && off.dot(off) <= R::of_f32(f32::from_bits(place.format));
+    if within { V3::of_f32(numbers_of(light)) } else { V3::splat(R::of(0.0)) }
 }
 
 #[cfg(test)]

@@ -42,6 +42,7 @@ pub mod rim;
 pub mod sampler;
 
 pub mod shape;
+mod sky;
 pub mod surface_hit;
 mod to_light;
 pub mod volume;

@@ -3,7 +3,7 @@
 use crate::direction::about_axis;
 use crate::real::{NO_HIT, Real, V3};
 use crate::sampler::concentric_disc;
-use kernels::layout::{LIGHT_POINT, Light};
+use kernels::layout::{LIGHT_DIRECTIONAL, LIGHT_POINT, Light};
 
 /// Between a place and the centre, as weights see it.
 const LEAST_COSINE: f64 = 1e-3;
@@ -59,11 +59,40 @@ pub fn sample_light<R: Real>(light: &Light, x: V3<R>, u: [R; 2]) -> LightSample<
     LightSample { towards, distance: if is_point { entry } else { R::of(NO_HIT) }, arriving }
 }
 
+/// Squared, of what rays may meet.
+const LEAST_EXTENT: f64 = 1e-12;
+
+/// The radiance of a light with an extent, where a ray meets it before `end`; 0 where it does not, and of all other
+/// lights.
+#[must_use]
+pub fn met_of<R: Real>(light: &Light, origin: V3<R>, direction: V3<R>, end: R) -> V3<R> {
+    let zero = R::of(0.0);
+    let is_point = light.kind == LIGHT_POINT;
+    let extent = R::of_f32(light.extent);
+    let square_extent = extent * extent;
+    let has_extent =
+        square_extent > R::of(LEAST_EXTENT) && (is_point || light.kind == LIGHT_DIRECTIONAL);
+    let vector = V3::of_f32(light.vector);
+    let axis = if is_point { vector - origin } else { vector };
+    let square = axis.dot(axis);
+    let along = axis.dot(direction);
+    let off = axis.cross(direction);
+    let square_off = off.dot(off);
+    let within = square <= square_extent;
+    let half_chord = (square_extent - square_off).max(zero).sqrt();
+    let entry = if within { along + half_chord } else { along - half_chord };
+    let meets = has_extent && square_off <= square_extent && (along > zero || (is_point && within));
+    let before = if is_point { entry < end } else { end >= R::of(NO_HIT) };
+    if !(meets && before) {
+        return V3::splat(zero);
+    }
+    V3::of_f32(light.strength).over(R::of(std::f64::consts::PI) * square_extent)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sampler::sample_2d;
-    use kernels::layout::LIGHT_DIRECTIONAL;
 
     const CENTER: [f64; 2] = [0.5; 2];
 

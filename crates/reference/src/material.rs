@@ -3,15 +3,17 @@
 //!
 //! Whether a kind is lit, sends rays on and has an inside are properties, which [`plan::materials`] states.
 
+pub(crate) mod cloud;
 mod diffuse;
 mod glass;
 mod mirror;
 
 use crate::media::{Crossing, Media, Way};
 use crate::real::{Real, V3};
+use crate::sampler::sample_2d;
 use kernels::layout::{
-    MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MIRROR, MOST_CROSSINGS, NONE, ObjectInfo,
-    SAMPLE_FRESNEL, WaveParams,
+    FIRST_CHANCE, MATERIAL_CLOUD, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MATTE,
+    MATERIAL_MIRROR, MOST_CROSSINGS, NONE, ObjectInfo, SAMPLE_FRESNEL, SAMPLE_SCATTER, WaveParams,
 };
 use plan::materials::{has_inside, is_lit, sends_rays_on};
 
@@ -48,6 +50,14 @@ pub(crate) fn fate_at(
     }
 }
 
+/// The chance that a path with this throughput goes on.
+pub(crate) fn survival_of<R: Real>(throughput: V3<R>, channels: u32, bounces: u32) -> R {
+    if bounces < FIRST_CHANCE {
+        return R::of(1.0);
+    }
+    throughput.largest_of(channels).min(R::of(1.0))
+}
+
 impl Fate {
     /// Whether rays may still go on, after so many bounces and crossings.
     pub fn goes_on(&self, [bounces, crossings]: [u32; 2], max_bounces: u32) -> bool {
@@ -60,7 +70,7 @@ impl Fate {
 pub(crate) struct Place<'a, R> {
     /// The ray's direction.
     pub d: V3<R>,
-    /// Of the surface, facing the ray's origin.
+    /// Of the surface, facing the ray's origin; in a cloud, the colour there.
     pub normal: V3<R>,
     pub info: &'a ObjectInfo,
 }
@@ -70,6 +80,8 @@ pub(crate) struct Place<'a, R> {
 pub(crate) struct Drawn<R> {
     /// Under it, glass reflects; `None`: it refracts wherever it can.
     pub chance: Option<R>,
+    /// In the unit square: where scattered light goes.
+    pub place: [R; 2],
 }
 
 impl<R: Real> Drawn<R> {
@@ -77,7 +89,8 @@ impl<R: Real> Drawn<R> {
         let sample = if params.sample_index == NONE { 0 } else { params.sample_index };
         let chance =
             || crate::sampler::sample_1d(pixel, sample, params.seed, SAMPLE_FRESNEL + bounce);
-        Self { chance: (params.fresnel != 0).then(chance) }
+        let place = sample_2d(pixel, sample, params.seed, SAMPLE_SCATTER + bounce);
+        Self { chance: (params.fresnel != 0).then(chance), place }
     }
 }
 
@@ -104,6 +117,8 @@ pub(crate) fn sent_on<R: Real>(
         (MATERIAL_GLASS, Some(crossing)) => {
             glass::sent_on(place, (crossing, fate.passes), channels, drawn, objects)
         }
+        (MATERIAL_MATTE, _) => diffuse::sent_on(place, drawn),
+        (MATERIAL_CLOUD, _) => cloud::sent_on(place, drawn),
         (kind, _) => unreachable!("material {kind} sends no rays on"),
     }
 }
@@ -112,7 +127,8 @@ pub(crate) fn sent_on<R: Real>(
 /// directions.
 pub(crate) fn lobe<R: Real>(place: &Place<'_, R>, towards: V3<R>) -> V3<R> {
     match place.info.material {
-        MATERIAL_DIFFUSE => diffuse::lobe(place, towards),
+        MATERIAL_DIFFUSE | MATERIAL_MATTE => diffuse::lobe(place, towards),
+        MATERIAL_CLOUD => cloud::lobe(place, towards),
         kind => unreachable!("material {kind} is not lit"),
     }
 }
@@ -124,7 +140,26 @@ pub(crate) fn scattered<R: Real>(
     albedo: impl FnOnce() -> V3<R>,
 ) -> V3<R> {
     match info.material {
-        MATERIAL_DIFFUSE => diffuse::scattered(light, albedo()),
+        MATERIAL_DIFFUSE | MATERIAL_MATTE => diffuse::scattered(light, albedo()),
+        MATERIAL_CLOUD => albedo() * light,
+        kind => unreachable!("material {kind} is not lit"),
+    }
+}
+
+/// A direction that light comes from, drawn by how a lit surface scatters, for u in the unit square.
+pub(crate) fn lobe_direction<R: Real>(place: &Place<'_, R>, u: [R; 2]) -> V3<R> {
+    match place.info.material {
+        MATERIAL_DIFFUSE | MATERIAL_MATTE => diffuse::direction(place, u),
+        MATERIAL_CLOUD => cloud::direction(place, u),
+        kind => unreachable!("material {kind} is not lit"),
+    }
+}
+
+/// How densely that draws directions around one, per steradian.
+pub(crate) fn lobe_density<R: Real>(place: &Place<'_, R>, towards: V3<R>) -> R {
+    match place.info.material {
+        MATERIAL_DIFFUSE | MATERIAL_MATTE => diffuse::density(place, towards),
+        MATERIAL_CLOUD => cloud::density(place, towards),
         kind => unreachable!("material {kind} is not lit"),
     }
 }
@@ -165,9 +200,15 @@ mod tests {
             let (_, after) = GLSL.split_once(head).unwrap_or_else(|| panic!("no '{head}'"));
             after.split("\n}\n").next().unwrap().to_owned()
         };
-        let [sends, lights, scatters, passes] =
-            ["\nSent sent_on(", "\nvec3 lobe(", "\nvec3 scattered(", "\nvec3 light_passed("]
-                .map(body);
+        let [sends, lights, scatters, passes, directions, densities] = [
+            "\nSent sent_on(",
+            "\nvec3 lobe(",
+            "\nvec3 scattered(",
+            "\nvec3 light_passed(",
+            "\nvec3 lobe_direction(",
+            "\nfloat lobe_density(",
+        ]
+        .map(body);
         let bits = ["MATERIAL_LIT", "MATERIAL_SENDS", "MATERIAL_INSIDE"];
         let all = STAGES.iter().flat_map(|stage| stage.constants);
         let is_kind = |name: &str| name.starts_with("MATERIAL_") && !bits.contains(&name);
@@ -179,6 +220,8 @@ mod tests {
             assert_eq!(sends.contains(&case), sent, "{name}: sent_on");
             assert_eq!(lights.contains(&case), lit, "{name}: lobe");
             assert_eq!(scatters.contains(&case), lit, "{name}: scattered");
+            assert_eq!(directions.contains(&case), lit, "{name}: lobe_direction");
+            assert_eq!(densities.contains(&case), lit, "{name}: lobe_density");
             let inside = material & MATERIAL_INSIDE != 0;
             assert_eq!(passes.contains(&case), inside, "{name}: light_passed");
 
@@ -196,7 +239,8 @@ mod tests {
                 );
             }
             if fate.lit {
-                let light = lobe(&place, V3([0.0, 1.0, 0.0]));
+                let light = lobe(&place, lobe_direction(&place, [0.25, 0.5]));
+                assert!(lobe_density(&place, V3([0.0, 1.0, 0.0])) > 0.0);
                 let _: V3<f64> = scattered(&info, light, || V3::splat(1.0));
             }
         }

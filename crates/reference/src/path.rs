@@ -12,6 +12,12 @@ pub(crate) struct Path<R> {
     pub reflected: bool,
     /// Surfaces on its way were lit, so that what it brings is added to what the pixel has.
     pub adds: bool,
+    /// The last thing on its way scattered it to all sides, and has asked the lamps and the background for light.
+    pub scattered: bool,
+    /// Something on its way before the last did.
+    pub indirect: bool,
+    /// Of the background, where light goes from surface to surface.
+    pub share: R,
     pub bounces: u32,
     pub crossings: u32,
     pub media: Media,
@@ -30,6 +36,9 @@ impl<R: Real> Path<R> {
             channels: CHANNELS_ALL,
             reflected: false,
             adds: false,
+            scattered: false,
+            indirect: false,
+            share: R::of(1.0),
             bounces: 0,
             crossings: 0,
             media: Media::of(media),

@@ -51,7 +51,7 @@ pub fn point_lights<R: Real>(
                 if !may_be_seen(info, volumes, x) {
                     return;
                 }
-                for (at, (of_light, light)) in of.iter_mut().zip(&plan.lights).enumerate() {
+                for (at, (of_light, light)) in of.iter_mut().zip(plan.lamps()).enumerate() {
                     let mut ray = point_rays(light, x);
                     ray.passed = plan.passed_of(info.object, at as u32);
                     if plan.light_passes {

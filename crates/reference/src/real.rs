@@ -244,6 +244,14 @@ impl<R: Real> V3<R> {
     pub fn z(self) -> R {
         self.0[2]
     }
+    /// The largest of these channels, or 0.
+    pub fn largest_of(self, channels: u32) -> R {
+        let of = |channel: usize| match channels >> channel & 1 {
+            0 => R::of(0.0),
+            _ => self.0[channel],
+        };
+        of(0).max(of(1)).max(of(2))
+    }
     /// Number by number.
     #[must_use]
     pub fn zip(self, other: Self, f: impl Fn(R, R) -> R) -> Self {

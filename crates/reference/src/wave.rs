@@ -8,6 +8,7 @@ mod classify;
 mod scatter;
 mod shade;
 mod shadow_rays;
+mod sky_rays;
 
 use crate::Reference;
 use crate::albedo::Albedos;
@@ -22,10 +23,19 @@ use crate::march::{March, half_lost, is_whole, march};
 use crate::media::Media;
 use crate::path::Path;
 use crate::real::{NO_HIT, Real, V3};
+use crate::sky::Sky;
 use crate::surface_hit::Hit;
 use crate::volume::Lighting;
 use kernels::layout::{FilmPixel, WaveParams};
 use plan::{Plan, Rays};
+
+/// What volumes have done to a ray before its end, where light goes from surface to surface.
+struct Passed<R> {
+    /// Sent to the pixel.
+    sent: V3<R>,
+    /// Optical depth.
+    depth: R,
+}
 
 /// One pixel while its rays are followed.
 pub(crate) struct PixelTrace<'a, R> {
@@ -45,8 +55,10 @@ pub(crate) struct PixelTrace<'a, R> {
 impl<R: Real> PixelTrace<'_, R> {
     /// Follows a camera ray and all that come of it. By discs where they are given.
     pub fn run(&mut self, ray: Ray<R>, discs: Option<&DiscLists>) {
-        let has_volumes = !self.plan.volumes.infos.is_empty();
-        let mut rays = vec![(ray, Path::of_camera(&self.plan.camera_media, has_volumes))];
+        // Where light goes from surface to surface, the throughput lacks what volumes take.
+        let keeps_depths = !self.plan.volumes.infos.is_empty() && !self.plan.follows_paths();
+        let camera = Path::of_camera(&self.plan.camera_media, keeps_depths);
+        let mut rays = vec![(ray, Path { adds: self.plan.follows_paths(), ..camera })];
         let mut discs = discs;
         let mut from_camera = true;
         while let Some((mut ray, path)) = rays.pop() {
@@ -102,17 +114,23 @@ impl<R: Real> PixelTrace<'_, R> {
         rays: &mut Vec<(Ray<R>, Path<R>)>,
     ) {
         let end = hit.as_ref().map_or(R::of(NO_HIT), |(hit, _)| hit.t);
-        if let Some(march) = self.march(ray, end, &path.media, self.lighting()) {
+        let marched = self.march(ray, end, &path.media, self.lighting());
+        let mut passed = Passed { sent: V3::splat(R::of(0.0)), depth: R::of(0.0) };
+        if let Some(march) = marched {
             let through = path.throughput.times((-path.depth).exp_negative());
-            path.emitted = path.emitted + through * march.color;
-            path.depth = path.depth + march.depth;
+            if self.plan.follows_paths() {
+                passed = Passed { sent: path.throughput * march.color, depth: march.depth };
+            } else {
+                path.emitted = path.emitted + through * march.color;
+                path.depth = path.depth + march.depth;
+            }
             if from_camera {
                 self.film.along = self.along(ray, end, &path.media, &march).to_f32();
             } else if path.channels & 1 != 0 && !path.reflected {
                 self.show_later(ray, |trace| trace.along(ray, end, &path.media, &march));
             }
         }
-        let fate = self.classify(ray, hit.as_ref(), &mut path, from_camera);
+        let fate = self.classify(ray, hit.as_ref(), (&mut path, &passed), from_camera);
         let (Some((fate, way)), Some((hit, object))) = (fate, hit) else { return };
         if fate.lit {
             self.shade(ray, &hit, object, &path);
@@ -144,10 +162,19 @@ impl<R: Real> PixelTrace<'_, R> {
         t.map_or(R::of(-1.0), |t| t * ray.direction.dot(V3::of_f32(self.params.forward)))
     }
 
+    /// Where the environment is bright.
+    fn sky(&self) -> Sky<'_> {
+        Sky {
+            images: self.albedos.images,
+            background: &self.params.background,
+            table: &self.plan.environment_table,
+        }
+    }
+
     fn lighting(&self) -> Option<Lighting<'_, R>> {
         self.plan
             .volumes
             .any_lit()
-            .then_some(Lighting { visible: &self.reference.visible, lights: &self.plan.lights })
+            .then_some(Lighting { visible: &self.reference.visible, lights: self.plan.lamps() })
     }
 }

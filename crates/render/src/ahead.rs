@@ -3,6 +3,7 @@
 use crate::RenderError;
 use crate::marks::Marks;
 use crate::renderer::{Renderer, longest_list, needed, wave_rays};
+use crate::stages::drawing_of;
 use crate::state::RayLoop;
 use crate::structure;
 use gpu::{Device, Kernel};
@@ -21,7 +22,7 @@ impl Renderer {
     /// A device that is too small for a kernel.
     pub fn likely_kernels(device: &Arc<Device>, plan: &Plan) -> Result<Vec<Kernel>, RenderError> {
         let builds = |module| Kernel::new(device, module, None);
-        let traces = |module| Kernel::new(device, module, Some(plan.scene_bits()));
+        let traces = |module| Kernel::new(device, module, Some(plan.constants()));
         let [first, build, then] = likely_modules(device, plan);
         let first = first.into_iter().map(traces);
         let then = then.into_iter().map(traces);
@@ -72,13 +73,18 @@ fn likely_modules(device: &Arc<Device>, plan: &Plan) -> [Vec<&'static Module>; 3
     let any_lit = any_surface && plan.scene_bits() & SCENE_LIT != 0;
     let is_lit = any_lit && !plan.lights.is_empty();
     let scatters = any_surface && plan.scatters();
-    let points_lit = plan.volumes.any_lit() && !plan.lights.is_empty();
+    let points_lit = plan.volumes.any_lit() && !plan.lamps().is_empty();
     let mut when = |asked: bool, modules: &[&'static Module]| {
         then.extend(modules.iter().filter(|_| asked));
     };
     when(scatters || !at_once, &[spirv::surface_hit(rays), spirv::classify(rays)]);
     when(scatters, &[spirv::scatter(rays)]);
-    when(is_lit, &[spirv::shadow_rays(rays), spirv::shade(rays)]);
+    when(is_lit && !plan.lamps().is_empty(), &[spirv::shadow_rays(rays)]);
+    let by_background = plan.lights[plan.lamps().len()..].iter().map(|light| light.kind);
+    for kind in by_background.filter(|_| is_lit) {
+        when(true, &[spirv::sky_rays(drawing_of(kind), rays)]);
+    }
+    when(is_lit, &[spirv::shade(rays)]);
     when(is_lit && plan.light_passes, &[spirv::shadow_media(rays)]);
     when(points_lit, &[spirv::point_rays(rays), spirv::point_lights(rays)]);
     let passes = (is_lit || points_lit) && plan.light_passes;

@@ -7,7 +7,7 @@ use crate::state::{RayLoop, RayState};
 use crate::stats::FrameStats;
 use crate::structure::{DiscLists, Structures};
 use crate::tables::{self, FilmBuffers, VolumeBuffers, WaveBuffers};
-use gpu::{Bindings, Device, Recorder};
+use gpu::{Bindings, Constants, Device, Recorder};
 use kernels::layout::{
     MARCHES, NONE, ObjectInfo, Path, Polynomial, SCENE_BLENDS, SCENE_LEVELS, VolumeStop,
 };
@@ -87,7 +87,7 @@ impl Renderer {
         let bound = bound.buffer(MARCHES, &wave.hits);
         let (volumes, bound) = VolumeBuffers::new(device, &plan.volumes, rays, bound)?;
         let shadows = if plan.lights.is_empty() { 1 } else { rays };
-        let scene = scene_bits(plan, &surfaces);
+        let constants = constants(plan, &surfaces);
         let rays = WaveRays {
             form,
             state: RayState::new(device, rays, form, plan.scatters())?,
@@ -96,8 +96,8 @@ impl Renderer {
         };
         Ok(Self {
             plan: Arc::clone(plan),
-            run: Run::new(device, scene)?,
-            structures: Structures::new(device, &surfaces, (form, scene))?,
+            run: Run::new(device, constants)?,
+            structures: Structures::new(device, &surfaces, (form, constants))?,
             surfaces,
             bound,
             buffers: Buffers { film, wave, volumes },
@@ -150,17 +150,18 @@ impl Renderer {
 }
 
 impl Run {
-    fn new(device: &Arc<Device>, scene: u32) -> Result<Self, RenderError> {
+    fn new(device: &Arc<Device>, constants: Constants) -> Result<Self, RenderError> {
         let mut recorder = Recorder::new(device)?;
-        recorder.specialize(scene);
+        recorder.specialize(constants);
         let (budget, device) = (Budget::of(device.info()), Arc::clone(device));
         Ok(Self { recorder, budget, device })
     }
 }
 
 /// What kernels are specialized by.
-fn scene_bits(plan: &Plan, surfaces: &Surfaces) -> u32 {
-    plan.scene_bits() | if surfaces.grids.are_several() { SCENE_LEVELS } else { 0 }
+fn constants(plan: &Plan, surfaces: &Surfaces) -> Constants {
+    let [scene, lighting] = plan.constants();
+    [scene | if surfaces.grids.are_several() { SCENE_LEVELS } else { 0 }, lighting]
 }
 
 /// Rays of a wave of the plan, at most.

@@ -4,10 +4,10 @@ use crate::RenderError;
 use crate::marks::Marks;
 use gpu::{Bindings, Buffer, Device, GpuError};
 use kernels::layout::{
-    CAMERA_FILTER, CAMERA_PATH, CELL_OFFSETS, CELLS, COLORS, FILM, FILM_SUMS, FilmPixel, FilmSum,
-    HITS, Hit, IMAGES, ISO_SEARCHES, IsoSearch, LEVELS, LIGHT_SUMS, LIGHTS, LISTED_POINTS,
-    LIT_HITS, LIT_MARKS, LIT_RAYS, LIVE, LightSum, LitHit, MARCH_ENDS, MARCH_LIGHTS, MARCHES,
-    March, MarchLight, NEXT_MARKS, NEXT_OFFSETS, OBJECTS, OUTCOMES, POLYNOMIALS, Path,
+    CAMERA_FILTER, CAMERA_PATH, CELL_OFFSETS, CELLS, COLORS, ENVIRONMENT_TABLE, FILM, FILM_SUMS,
+    FilmPixel, FilmSum, HITS, Hit, IMAGES, ISO_SEARCHES, IsoSearch, LEVELS, LIGHT_SUMS, LIGHTS,
+    LISTED_POINTS, LIT_HITS, LIT_MARKS, LIT_RAYS, LIVE, LightSum, LitHit, MARCH_ENDS, MARCH_LIGHTS,
+    MARCHES, March, MarchLight, NEXT_MARKS, NEXT_OFFSETS, OBJECTS, OUTCOMES, POLYNOMIALS, Path,
     SCATTERING_MARKS, SCATTERING_RAYS, SHADOW_PATHS, SLOTS, TALLY, TEXELS_OF_IMAGES, VISIBLE,
     VOLUME_CELLS, VOLUME_LENGTHS, VOLUME_LIGHTS, VOLUME_POINTS, VOLUME_STOPS, VOLUMES,
 };
@@ -15,8 +15,8 @@ use plan::{Plan, Volumes, Window};
 use points::device::Surfaces;
 use std::sync::Arc;
 
-/// What is counted on the device: hits that sent no ray to a light, and reflected rays.
-const TALLIED: usize = 2;
+/// What is counted on the device: hits that sent no ray to a light, reflected rays, and scattered ones.
+const TALLIED: usize = 3;
 
 /// What the scene has, none of which changes from pass to pass.
 pub(crate) fn of_scene(
@@ -24,6 +24,11 @@ pub(crate) fn of_scene(
     plan: &Plan,
     surfaces: &Surfaces,
 ) -> Result<Bindings, RenderError> {
+    // An empty buffer there is not.
+    let table = match plan.environment_table.as_slice() {
+        [] => &[0.0][..],
+        table => table,
+    };
     let mut table = Bindings::new()
         .buffer(POLYNOMIALS, &surfaces.polynomials)
         .buffer(OUTCOMES, &surfaces.outcome_buffer)
@@ -34,6 +39,7 @@ pub(crate) fn of_scene(
         .buffer(COLORS, &Buffer::from_slice(device, "point colors", &plan.colors)?)
         .buffer(IMAGES, &Buffer::from_slice(device, "images", &plan.images)?)
         .buffer(TEXELS_OF_IMAGES, &texel_buffer(device, plan)?)
+        .buffer(ENVIRONMENT_TABLE, &Buffer::from_slice(device, "environment table", table)?)
         .buffer(LIGHTS, &Buffer::from_slice(device, "lights", &plan.lights)?)
         .buffer(CAMERA_FILTER, &Buffer::from_slice(device, "filter", &plan.filter)?);
     if let Some(points) = &surfaces.point_cells {
@@ -188,7 +194,7 @@ impl WaveBuffers {
         self.paths.swap(0, 1);
     }
 
-    /// Hits that sent no ray to a light, and reflected rays, since the tally was zero.
+    /// Hits that sent no ray to a light, reflected and scattered rays, since the tally was zero.
     pub fn read_tally(&self) -> Result<[u64; TALLIED], GpuError> {
         let mut counts = [0u32; TALLIED];
         self.tally.read(0, &mut counts)?;

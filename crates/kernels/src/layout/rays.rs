@@ -39,6 +39,14 @@ stage! {
         SAMPLE_FRESNEL = 2;
         /// For the place on a light: one a light from here on.
         SAMPLE_LIGHT = 4096;
+        /// For the direction that light is scattered in: one a bounce from here on.
+        SAMPLE_SCATTER = 8192;
+        /// For whether a path goes on: one a bounce from here on.
+        SAMPLE_SURVIVAL = 12288;
+        /// For how far a ray comes in volumes: one a bounce from here on.
+        SAMPLE_DISTANCE = 16384;
+        /// Numbers of a bounce, of paths that light takes from surface to surface.
+        SAMPLES_A_BOUNCE = 65536;
     }
     bindings after [discs] {
         /// The ray state read: a queue, or the first of four images.

@@ -1,9 +1,9 @@
-//! What a scene needs: the bits of the specialization constant 0 (scene.glsl). Drivers leave out what it has not.
+//! What a scene needs: the bits of the specialization constants 0 and 1 (scene.glsl). Drivers leave out what it has not.
 
 use super::stage;
 
 stage! {
-    #![doc = "What a scene needs: the bits of the specialization constant 0 (scene.glsl). Drivers leave out what it has not."]
+    #![doc = "What a scene needs: the bits of the specialization constants 0 and 1 (scene.glsl). Drivers leave out what it has not."]
     "scene" needs []
     constants {
         /// Of the constant that kernels are specialized by: rays that hit nothing see an image.
@@ -68,6 +68,23 @@ stage! {
         SCENE_GLOSSY = 536_870_912;
         /// A transfer function is steep, and steps may be divided.
         SCENE_STEEP = 1_073_741_824;
+        /// Of the specialization constant 1: the background lights what rays hit, and how bright it is decides where rays look
+        /// for its light.
+        LIGHTING_TABLE = 1;
+        /// Light goes from surface to surface.
+        LIGHTING_PATH = 2;
+        /// The background lights what rays hit.
+        LIGHTING_SKY = 4;
+        /// Rays that surfaces send on may meet lamps with an extent.
+        LIGHTING_LAMPS = 8;
+        /// A sun stands in the background.
+        LIGHTING_SUN = 16;
+        /// What has come over several surfaces is limited.
+        LIGHTING_CLAMP = 32;
+        /// Volumes scatter rays.
+        LIGHTING_SCATTERS = 64;
+        /// They do so to some sides more than to others.
+        LIGHTING_ANISOTROPY = 128;
     }
     bindings after [film] {
     }

@@ -22,6 +22,10 @@ stage! {
         MATERIAL_MIRROR = 1 | MATERIAL_SENDS;
         /// [`ObjectInfo::material`] of smooth glass.
         MATERIAL_GLASS = 2 | MATERIAL_SENDS | MATERIAL_INSIDE;
+        /// [`ObjectInfo::material`] of Lambert's law where light goes on from surface to surface.
+        MATERIAL_MATTE = 3 | MATERIAL_LIT | MATERIAL_SENDS;
+        /// Of a volume that scatters light where it goes on.
+        MATERIAL_CLOUD = 4 | MATERIAL_LIT | MATERIAL_SENDS;
         /// Surfaces that a path may pass through that do not change its medium.
         MOST_CROSSINGS = 1024;
         /// [`Path::channels`] of a ray that carries all three.
@@ -30,6 +34,13 @@ stage! {
         PATH_REFLECTED = 8;
         /// Bit: surfaces on its way were lit, so that what it brings is added to what the pixel has.
         PATH_ADDS = 16;
+        /// Bit: the last thing on its way scattered it to all sides, and has asked the lamps and, by its brightness, the
+        /// background for light.
+        PATH_SCATTERED = 32;
+        /// Bit: something on its way before the last did.
+        PATH_INDIRECT = 64;
+        /// Paths may end by chance from this bounce on.
+        FIRST_CHANCE = 2;
         /// [`WaveParams::transparent`]: camera rays leave the background out.
         TRANSPARENT_CAMERA = 1;
         /// [`WaveParams::transparent`]: and so do rays that were only refracted.
@@ -50,6 +61,15 @@ stage! {
         LIGHT_DIRECTIONAL = 0;
         /// A light at a point.
         LIGHT_POINT = 1;
+        /// The background, whose light surfaces look for by how they scatter it.
+        LIGHT_SKY = 2;
+        /// The same by how bright it is.
+        LIGHT_ENVIRONMENT = 3;
+        /// As directional, the sun in the background, which rays that are not scattered see there.
+        LIGHT_SUN = 4;
+        /// Of the images after an environment: three rows of the matrix that turns it, and two of its sun: the
+        /// direction towards it and the square of the sine of its radius; its radiance.
+        IMAGES_OF_TURN = 3;
     }
     bindings after [rays] {
         /// The path of every ray from the camera, but for its pixel.
@@ -88,6 +108,8 @@ stage! {
         IMAGES: ImageInfo;
         /// A table of sRGB, and the texels of all images.
         TEXELS_OF_IMAGES: u32;
+        /// Where the environment is bright.
+        ENVIRONMENT_TABLE: f32;
     }
     structs {
         /// What rays that hit nothing see.
@@ -136,6 +158,10 @@ stage! {
             sample_index: u32,
             /// What leaves the background out: one of `TRANSPARENT_*`, or 0 for nothing.
             transparent: u32,
+            /// The most radiance of what has come over several surfaces.
+            clamp: f32,
+            /// Unused.
+            pad: [u32; 3],
         }
         /// Push constants of `camera_trace`.
         CameraTraceParams {
@@ -199,7 +225,7 @@ stage! {
             tolerance: f32,
             /// Slots that carry the object's surface; its spheres and discs come after these.
             slot_count: u32,
-            /// h over the width of the weights.
+            /// h over the width of the weights; of a cloud, the mean cosine of the angle that it scatters by.
             weight_scale: f32,
             /// 1: normals are blended over the polynomials around a hit.
             blends: u32,
@@ -235,7 +261,7 @@ stage! {
             throughput: [f32; 3],
             /// Pixel of the tile, row by row; `NONE`: no ray at all.
             pixel: u32,
-            /// Bits of `CHANNELS_ALL`: 1 red, 2 green, 4 blue; and `PATH_REFLECTED`, `PATH_ADDS`.
+            /// Bits of `CHANNELS_ALL`: 1 red, 2 green, 4 blue; and `PATH_*`.
             channels: u32,
             /// Interactions with surfaces so far.
             bounces: u32,
@@ -247,7 +273,8 @@ stage! {
             media: [u32; MEDIA_WORDS as usize],
             /// What volumes on its way have sent to the pixel.
             emitted: [f32; 3],
-            /// Optical depth of the volumes on its way so far, which is no part of the throughput.
+            /// Optical depth of the volumes on its way so far, which is no part of the throughput. Where light goes from surface
+            /// to surface it is; then this is the share of the background that the path counts (`LIGHTING_PATH`).
             depth: f32,
         }
         /// Light at a lit hit.

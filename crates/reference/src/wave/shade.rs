@@ -11,7 +11,7 @@ use crate::path::Path;
 use crate::real::{Real, V3};
 use crate::surface_hit::Hit;
 use crate::to_light::light_through;
-use kernels::layout::NONE;
+use kernels::layout::{LIGHT_ENVIRONMENT, LIGHT_SKY, NONE};
 
 impl<R: Real> PixelTrace<'_, R> {
     pub(super) fn shade(&mut self, ray: &Ray<R>, hit: &Hit<R>, object: u32, path: &Path<R>) {
@@ -21,15 +21,22 @@ impl<R: Real> PixelTrace<'_, R> {
         let slot = ray.hit_slot;
         let mut light = V3::splat(R::of(0.0));
         for i in 0..self.plan.lights.len() as u32 {
-            let Some((ray, arriving)) = self.shadow_ray(i, hit, &place, slot) else { continue };
+            let towards = match self.plan.lights[i as usize].kind {
+                LIGHT_SKY | LIGHT_ENVIRONMENT => self.sky_ray(i, hit, (&place, path), slot),
+                _ => self.shadow_ray(i, hit, (&place, path), slot),
+            };
+            let Some((ray, arriving)) = towards else { continue };
             self.rays.shadow += 1;
             if let Some(arriving) = self.gathered(ray, arriving, i as usize, &path.media) {
                 light = light + arriving;
             }
         }
-        let albedo = || self.albedos.albedo_at(object, slot, hit.position);
+        let albedo = || self.albedo_of(&place, object, slot, hit.position);
         let radiance = scattered(info, light, albedo);
-        let seen = path.through_volumes(path.throughput * radiance);
+        let mut seen = path.through_volumes(path.throughput * radiance);
+        if path.scattered || path.indirect {
+            seen = self.limited(path, seen);
+        }
         write_channels(&mut self.film, path, path.emitted + seen);
     }
 

@@ -4,10 +4,11 @@ use super::PixelTrace;
 use crate::camera_rays::Ray;
 use crate::light::sample_light;
 use crate::material::{Place, lobe};
+use crate::path::Path;
 use crate::real::{Real, V3};
 use crate::sampler::sample_2d;
 use crate::surface_hit::Hit;
-use kernels::layout::{NONE, SAMPLE_LIGHT, WaveParams};
+use kernels::layout::{NONE, SAMPLE_LIGHT, SAMPLES_A_BOUNCE};
 
 impl<R: Real> PixelTrace<'_, R> {
     /// The ray towards light i and what it would bring; `None` where nothing of it is scattered.
@@ -15,11 +16,16 @@ impl<R: Real> PixelTrace<'_, R> {
         &self,
         i: u32,
         hit: &Hit<R>,
-        place: &Place<'_, R>,
+        (place, path): (&Place<'_, R>, &Path<R>),
         slot: u32,
     ) -> Option<(Ray<R>, V3<R>)> {
         let zero = R::of(0.0);
-        let u = place_on_light(self.params, self.pixel, i);
+        let u = match self.params.sample_index {
+            NONE => [R::of(0.5); 2], // of the light: its centre, unless it is sampled
+            sample => {
+                sample_2d(self.pixel, sample, self.params.seed, self.dimension_of_light(i, path))
+            }
+        };
         let sample = sample_light(&self.plan.lights[i as usize], hit.position, u);
         let arriving = sample.arriving * lobe(place, sample.towards);
         let arrives = arriving.0.iter().any(|&channel| channel > zero);
@@ -29,13 +35,11 @@ impl<R: Real> PixelTrace<'_, R> {
             (ray, arriving)
         })
     }
-}
 
-/// The place on light i that a sample of a pixel of the full image asks for: its centre, unless there are
-/// several samples.
-fn place_on_light<R: Real>(params: &WaveParams, pixel: [u32; 2], i: u32) -> [R; 2] {
-    if params.sample_index == NONE {
-        return [R::of(0.5); 2];
+    /// Which of the numbers of a sample choose a place on light i. Where light goes from surface to surface, each bounce has
+    /// its own.
+    pub(super) fn dimension_of_light(&self, i: u32, path: &Path<R>) -> u32 {
+        let bounce = if self.plan.follows_paths() { path.bounces } else { 0 };
+        SAMPLE_LIGHT + i + SAMPLES_A_BOUNCE * bounce
     }
-    sample_2d(pixel, params.sample_index, params.seed, SAMPLE_LIGHT + i)
 }

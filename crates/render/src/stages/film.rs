@@ -27,9 +27,9 @@ impl Frame<'_> {
 
     /// The rays of a sample of a tile.
     pub fn counted(&self, tile: &Window) -> Result<Rays, RenderError> {
-        let [dark, reflected] = self.renderer.buffers.wave.read_tally()?;
-        let refracted = self.asked.scattered - reflected;
+        let [dark, reflected, scattered] = self.renderer.buffers.wave.read_tally()?;
+        let refracted = self.asked.scattered - reflected - scattered;
         let (camera, shadow) = (tile.pixels() as u64, self.asked.lights - dark);
-        Ok(Rays { camera, shadow, reflected, refracted })
+        Ok(Rays { camera, shadow, reflected, refracted, scattered })
     }
 }

@@ -4,9 +4,16 @@
 use crate::RenderError;
 use crate::frame::Frame;
 use crate::stats::Traced;
-use kernels::layout::{MARKS, NONE, PATHS, ShadowParams, WAVE_SHARES_PATH, WaveParams};
-use kernels::spirv::{self, Searching};
+use kernels::layout::{
+    LIGHT_ENVIRONMENT, LIGHT_SKY, MARKS, NONE, PATHS, ShadowParams, WAVE_SHARES_PATH, WaveParams,
+};
+use kernels::spirv::{self, Drawing, Searching};
 use points::device::line;
+
+/// How directions towards the background are drawn, which is a light of this kind.
+pub(crate) fn drawing_of(kind: u32) -> Drawing {
+    if kind == LIGHT_ENVIRONMENT { Drawing::Table } else { Drawing::Lobe }
+}
 
 impl Frame<'_> {
     /// Light after light, shadow rays from a wave's lit hits, and then what their surfaces make of it. The wave's rays
@@ -21,7 +28,11 @@ impl Frame<'_> {
         for light in 0..params.light_count {
             let params = WaveParams { light, ..*params };
             let own = self.renderer.rays.shadows.updated().buffer(PATHS, &paths);
-            self.dispatch(spirv::shadow_rays(rays), &own, &params, invocations);
+            let module = match self.plan.lights[light as usize].kind {
+                kind @ (LIGHT_SKY | LIGHT_ENVIRONMENT) => spirv::sky_rays(drawing_of(kind), rays),
+                _ => spirv::shadow_rays(rays),
+            };
+            self.dispatch(module, &own, &params, invocations);
             self.renderer.rays.shadows.passed();
             if self.plan.light_passes {
                 let own = self.renderer.rays.shadows.in_place().buffer(PATHS, &paths);

@@ -10,3 +10,4 @@ mod trace;
 mod volumes;
 
 pub(crate) use fate::Fates;
+pub(crate) use light::drawing_of;

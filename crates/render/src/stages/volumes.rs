@@ -103,7 +103,7 @@ impl Frame<'_> {
         for (volume, (_, range)) in all.filter(|(_, (info, _))| info.shading != VOLUME_EMITS) {
             for first in range.clone().step_by(rays) {
                 let count = (range.end - first).min(rays) as u32;
-                for light in 0..plan.lights.len() as u32 {
+                for light in 0..plan.lamps().len() as u32 {
                     let params = PointLightParams { first: first as u32, count, light, volume };
                     self.light_batch(&params)?;
                 }
@@ -139,7 +139,7 @@ impl Frame<'_> {
             volume_count: self.plan.volumes.infos.len() as u32,
             step: self.plan.volumes.step,
             work: self.renderer.run.budget.work() / 2, // two loops a sample
-            light_count: self.plan.lights.len() as u32,
+            light_count: self.plan.lamps().len() as u32,
             ..MarchParams::default()
         }
     }

@@ -10,7 +10,7 @@ pub use discs::DiscLists;
 use crate::RenderError;
 use crate::state::{RayLoop, RayState};
 use discs::Discs;
-use gpu::{Bindings, Device, PassBuilder, Recorder, Timings};
+use gpu::{Bindings, Constants, Device, PassBuilder, Recorder, Timings};
 use grid::Grid;
 use kernels::layout::{CameraTraceParams, TraceParams};
 use kernels::spirv::{Module, Rays, Start};
@@ -75,14 +75,14 @@ pub(crate) struct Structures {
 }
 
 impl Structures {
-    /// Over surfaces that were built, for kernels that are specialized by `scene`.
+    /// Over surfaces that were built, for kernels that are specialized by `constants`.
     pub fn new(
         device: &Arc<Device>,
         surfaces: &Surfaces,
-        (form, scene): (RayLoop, u32),
+        (form, constants): (RayLoop, Constants),
     ) -> Result<Self, RenderError> {
         Ok(Self {
-            grid: Grid::new(surfaces, scene),
+            grid: Grid::new(surfaces, constants),
             tree: surfaces.tree.as_ref().map(Tree::new),
             discs: Discs::new(device, surfaces.outcomes.len() as u32, form.rays())?,
         })
