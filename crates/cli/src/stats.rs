@@ -171,6 +171,8 @@ pub struct Rays {
     pub reflected: u64,
     /// Into and out of glass.
     pub refracted: u64,
+    /// To all sides, from matt surfaces and in volumes, where light goes from surface to surface.
+    pub scattered: u64,
 }
 
 /// Rays a second. By kind: over the device's time for the traversal of that kind alone; null where there are
@@ -183,7 +185,7 @@ pub struct RaysPerSecond {
     pub camera: Option<f64>,
     /// Towards lights.
     pub shadow: Option<f64>,
-    /// Reflected and refracted ones, which are traced together.
+    /// Reflected, refracted and scattered ones, which are traced together.
     pub scattered: Option<f64>,
 }
 
@@ -283,6 +285,7 @@ impl Row {
             shadow: frame.rays.shadow,
             reflected: frame.rays.reflected,
             refracted: frame.rays.refracted,
+            scattered: frame.rays.scattered,
         };
         Self {
             name: measured.name.clone(),
@@ -351,7 +354,7 @@ pub fn milliseconds(duration: Duration) -> f64 {
 impl RaysPerSecond {
     /// From counts, the milliseconds of a frame, and those of its traversal.
     pub fn new(rays: &Rays, frame: f64, traversal: &Traversal) -> Self {
-        let scattered = rays.reflected + rays.refracted;
+        let scattered = rays.reflected + rays.refracted + rays.scattered;
         let all = rays.camera + rays.shadow + scattered;
         let per_second =
             |count: u64, ms: f64| (count > 0 && ms > 0.0).then(|| 1e3 * count as f64 / ms);

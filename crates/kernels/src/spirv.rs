@@ -229,10 +229,10 @@ kernels! {
     shape_spheres();
     /// How far empty cells are from others.
     skip_cells();
-    /// Feature sizes as means over neighbours.
-    smooth_sizes(lists: Lists);
     /// Rays towards the background.
     sky_rays(by: Drawing, rays: Rays);
+    /// Feature sizes as means over neighbours.
+    smooth_sizes(lists: Lists);
     /// Stable sort by one digit, first half.
     sort_count();
     /// Stable sort by one digit, second half.

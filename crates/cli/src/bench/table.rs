@@ -46,6 +46,7 @@ const DETAILS: &[Column] = &[
     ("Mrays/s", |row| row.rays_per_second.shadow.map(mega)),
     ("reflected", |row| some(row.rays.reflected)),
     ("refracted", |row| some(row.rays.refracted)),
+    ("scattered", |row| some(row.rays.scattered)),
     ("Mrays/s", |row| row.rays_per_second.scattered.map(mega)),
     ("GPU ms", |row| row.gpu_ms.map(|ms| short(ms.median))),
     ("min", |row| row.gpu_ms.map(|ms| short(ms.min))),
