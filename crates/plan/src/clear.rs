@@ -2,9 +2,7 @@
 
 use crate::Plan;
 use crate::materials::has_inside;
-use kernels::layout::{
-    LIGHT_POINT, Light, ObjectInfo, PASSED_NEAR, VOLUME_ISOSURFACE, VolumeInfo,
-};
+use kernels::layout::{LIGHT_POINT, Light, ObjectInfo, PASSED_NEAR, VOLUME_ISOSURFACE, VolumeInfo};
 use points::{Cloud, Shapes};
 use scene::{Integrator, Shadows};
 
