@@ -77,12 +77,12 @@ pub enum PlanError {
     /// More lights than a lit volume takes.
     #[error(
         "object '{name}': its volume has a shading, for which a scene may have 4 lights, but there are \
-         {lights}; leave some out, or set shading = \"none\""
+         {lights}, where a sky's sun counts; leave some out, or set shading = \"none\""
     )]
     TooManyVolumeLights {
         /// The object.
         name: String,
-        /// Lights of the scene.
+        /// Lights of the scene, with a sky's sun.
         lights: usize,
     },
     /// An isosurface of glass of a kernel whose isosurfaces have rims.

@@ -214,7 +214,8 @@ pub(crate) fn plan_volumes(
         return Err(PlanError::SeveralVolumes { name: name(info), count });
     }
     let lit = volumes.infos.iter().find(|info| info.shading != VOLUME_EMITS);
-    let lights = scene.lights.len();
+    let has_sun = scene.background_lights() && scene.background.sky.is_some();
+    let lights = scene.lights.len() + usize::from(has_sun);
     if let Some(info) = lit.filter(|_| lights > VOLUME_LIGHTS as usize) {
         return Err(PlanError::TooManyVolumeLights { name: name(info), lights });
     }
