@@ -156,8 +156,10 @@ void main() {
         float coverage = found ? 1.0 : (scene_has(SCENE_VOLUMES) ? absorptance(taken) : 0.0);
         uvec4 counts = uvec4(ray.tests, ray.cells, ray.hit_slot, hit.status >> HIT_TOTAL_SHIFT);
         bool all_adds = lighting_has(LIGHTING_PATH);
-        write_first(pixel, vec4(fate.sends && !all_adds ? vec3(0.0) : behind, coverage), all_adds || !is_lit, found,
-                    vec4(hit.position, depth), vec4(hit.normal, found ? float(object) : -1.0), counts, alpha);
+        bool on_surface = found; // rather than in a volume
+        if (lighting_has(LIGHTING_SCATTERS)) on_surface = found && object_material_at(object) != uint(MATERIAL_CLOUD);
+        write_first(pixel, vec4(fate.sends && !all_adds ? vec3(0.0) : behind, coverage), all_adds || !is_lit, on_surface,
+                    vec4(hit.position, depth), vec4(hit.normal, on_surface ? float(object) : -1.0), counts, alpha);
         if (scene_has(SCENE_VOLUMES)) film[pixel].along = marches[at].along;
     } else {
         count_work(pixel, ray.tests, ray.cells);

@@ -18,6 +18,12 @@
 //         visible          of each point, how much of each light's reaches it
 // writes  march_lights     beside march
 //
+// With SCATTERED, where light goes from surface to surface, volumes that are lit scatter rays: a ray ends where the optical
+// depth of these is the one that is drawn for it, with the colour there for a normal, as a hit on what stands for the volume.
+// What others emit before that and take is left in march.
+// writes  hits, the ray state      of such rays
+//         march_scatters   beside march
+//
 // Samples lie at the ends of steps that are counted from where the ray enters the first volume, or from its
 // start where it is inside the surface of one; the last step ends where the ray does, and counts with its own
 // length. Between the scalars at its ends, the transfer function is integrated. Where that is steep, steps that may pass
@@ -26,6 +32,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
+#ifdef SCATTERED
+#define STATE_WRITES
+#endif
 #include "stages/points.glsl"
 #include "stages/scene.glsl"
 #include "stages/rays.glsl"
@@ -39,6 +48,10 @@
 #include "scene.glsl"
 #ifdef LIT
 #include "light.glsl"
+#include "phase.glsl"
+#endif
+#ifdef SCATTERED
+#include "sampler.glsl"
 #endif
 
 layout(local_size_x = LINE_GROUP) in;
@@ -54,7 +67,12 @@ layout(std430, binding = MARCH_ENDS) buffer Ends { float ends[]; };
 layout(std430, binding = LIT_RAYS) readonly buffer LitRays { uint lit_rays[]; };
 layout(std430, binding = LIGHT_SUMS) buffer LightSums { LightSum light_sums[]; };
 #else
+#ifdef SCATTERED
+layout(std430, binding = HITS) buffer Hits { Hit hits[]; };
+layout(std430, binding = MARCH_SCATTERS) buffer MarchScatters { MarchScatter march_scatters[]; };
+#else
 layout(std430, binding = HITS) readonly buffer Hits { Hit hits[]; };
+#endif
 
 uint media_word(uint ray, uint word) {
     return paths[ray].media[word];
@@ -203,7 +221,9 @@ vec3 scattered(VolumeInfo volume, float numerator, float weights, MarchLight sum
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < params.light_count; ++i) {
         LightSample light = sample_light(lights[i], x, vec2(0.5));
-        float share = steep ? max(dot3(normal, light.towards), 0.0) * INVERSE_PI : INVERSE_FOUR_PI;
+        float even = INVERSE_FOUR_PI;
+        if (lighting_has(LIGHTING_ANISOTROPY)) even = phase(volume.iso, dot3(d, light.towards));
+        float share = steep ? max(dot3(normal, light.towards), 0.0) * INVERSE_PI : even;
         sum += ((sums.visible[i] / weights) * share) * light.arriving;
     }
     return sum;
@@ -213,7 +233,7 @@ vec3 scattered(VolumeInfo volume, float numerator, float weights, MarchLight sum
 void finish(uint at, uint path, March march) {
 #ifdef SHADOWS
     light_sums[at].arriving *= exp_negative(-march.depth);
-#else
+#elif !defined(SCATTERED) // `classify` knows what to do with the rest
     float before = paths[path].depth;
     paths[path].emitted += (exp_negative(-before) * paths[path].throughput) * march.color;
     paths[path].depth = before + march.depth;
@@ -239,6 +259,14 @@ void main() {
     if (march.state == 2u || !begins) return;
 #ifdef LIT
     MarchLight sums = march_lights[at];
+#endif
+#ifdef SCATTERED
+    MarchScatter scatter = march_scatters[at];
+    uint pixel = paths[path].pixel;
+    uint sample_index = params.sample_index == NONE ? 0u : params.sample_index;
+    uint dimension = uint(SAMPLE_DISTANCE) + paths[path].bounces + uint(DISTANCES_A_CROSSING) * paths[path].crossings;
+    uvec2 place_in_image = params.tile_origin + uvec2(pixel % params.tile_width, pixel / params.tile_width);
+    float chosen_depth = depth_of_chance(sample_1d(place_in_image, sample_index, params.seed, dimension));
 #endif
     march.state = max(march.state, 1u);
 #ifndef SHADOWS
@@ -389,6 +417,18 @@ void main() {
             vec3 mean_light = both ? 0.5 * (light_there + light) : (is_here ? light : light_there);
             seen.scattering.xyz *= mean_light;
 #endif
+#ifdef SCATTERED
+            bool scatters = counts_here && volume.shading != VOLUME_EMITS;
+            vec3 others_scattering = alone ? vec3(0.0) : scatter.step_color;
+            float others_scatter = alone ? 0.0 : scatter.step_extinction;
+            float own_scatter = share * seen.scattering.w;
+            bool is_most = scatters && (alone || own_scatter > scatter.most);
+            scatter.slot = is_most ? volume.refracts : scatter.slot;
+            scatter.most = is_most ? own_scatter : scatter.most;
+            scatter.step_color = scatters ? others_scattering + share * seen.scattering.xyz : others_scattering;
+            scatter.step_extinction = scatters ? others_scatter + own_scatter : others_scatter;
+            seen.scattering = scatters ? vec4(0.0) : seen.scattering;
+#endif
             vec3 others_color = alone ? vec3(0.0) : march.step_color;
             float others_extinction = alone ? 0.0 : march.step_extinction;
             vec3 color_now = others_color + share * (seen.scattering.xyz + seen.emission);
@@ -401,18 +441,45 @@ void main() {
             bool last = alone || march.volume + 1u >= params.volume_count;
             bool closer = last && divided && part == 0u; // the step begins anew, in parts
             bool ends_step = last && !closer;
-            float step_depth = step_extinction * at_place.length_of_step;
+            float length_of_step = at_place.length_of_step;
+            bool ends_here = false; // a volume scatters the ray within this step
+#ifdef SCATTERED
+            float scatter_depth = scatter.step_extinction * length_of_step;
+            float short_of = chosen_depth - scatter.depth;
+            ends_here = ends_step && scatter_depth > 0.0 && scatter_depth >= short_of;
+            float reached_part = max(short_of, 0.0) / (scatter_depth > 0.0 ? scatter_depth : 1.0);
+            length_of_step = ends_here ? length_of_step * reached_part : length_of_step;
+            float scatter_lost = scatter.lost;
+            float scatter_sum = add_to(scatter.depth, scatter_depth, scatter_lost);
+            bool adds_scatter = ends_step && scatter_depth > 0.0;
+            scatter.depth = adds_scatter ? scatter_sum : scatter.depth;
+            scatter.lost = adds_scatter ? scatter_lost : scatter.lost;
+            if (ends_here) {
+                float t = at_place.begin + length_of_step;
+                hits[at].t = t;
+                hits[at].position = ray.origin + t * ray.direction;
+                hits[at].normal = min(scatter.step_color / scatter.step_extinction, vec3(1.0));
+                hits[at].status = 0u;
+                ray.hit_slot = scatter.slot;
+                ray.hit_t = t;
+                store_ray(at, ray);
+            }
+            scatter.step_color = last ? vec3(0.0) : scatter.step_color;
+            scatter.step_extinction = last ? 0.0 : scatter.step_extinction;
+            scatter.most = last ? 0.0 : scatter.most;
+#endif
+            float step_depth = step_extinction * length_of_step;
             bool emits = ends_step && (step_depth > 0.0 || any(greaterThan(step_color, vec3(0.0))));
             float through = exp_negative(-march.depth);
-            vec3 lengths = vec3(at_place.length_of_step * mean_transmittance(step_depth)); // that a step shows
+            vec3 lengths = vec3(length_of_step * mean_transmittance(step_depth)); // that a step shows
 #ifndef SHADOWS
             uint absorbs = scene_has(SCENE_ABSORBS) && emits && medium != NONE ? 1u : 0u;
             while (absorbs > 0u) {
                 --absorbs;
-                vec3 both_depths = vec3(step_depth) + object_at(medium).absorption * at_place.length_of_step;
-                lengths.x = at_place.length_of_step * mean_transmittance(both_depths.x);
-                lengths.y = at_place.length_of_step * mean_transmittance(both_depths.y);
-                lengths.z = at_place.length_of_step * mean_transmittance(both_depths.z);
+                vec3 both_depths = vec3(step_depth) + object_at(medium).absorption * length_of_step;
+                lengths.x = length_of_step * mean_transmittance(both_depths.x);
+                lengths.y = length_of_step * mean_transmittance(both_depths.y);
+                lengths.z = length_of_step * mean_transmittance(both_depths.z);
                 lengths *= transmittance(medium, at_place.begin);
             }
             bool again = scene_has(SCENE_DEPTHS) && march.state == 3u;
@@ -440,7 +507,7 @@ void main() {
             march.volume = last ? 0u : march.volume + 1u;
             bool dark = march.depth > DEEPEST;
             march.depth = dark ? OPAQUE : march.depth;
-            bool over = ends_step && (dark || found);
+            bool over = ends_step && (dark || found || ends_here);
             uint next_part = (closer || part > 0u) && !over && !is_known ? part + 1u : 0u;
             march.place = over ? places : (ends_step && next_part == 0u ? march.place + 1u : march.place);
             part = last ? next_part : part;
@@ -483,6 +550,9 @@ void main() {
     marches[at] = march;
 #ifdef LIT
     march_lights[at] = sums;
+#endif
+#ifdef SCATTERED
+    march_scatters[at] = scatter;
 #endif
     if (!done) atomicAdd(live, 1u);
 }

@@ -86,7 +86,10 @@ void go_on(inout Path path, inout uint how, inout vec3 throughput, Place place, 
     }
     path.depth = share;
     float survival = survival_of(path.throughput, path.channels, path.bounces);
-    throughput *= albedo_at(place.object, slot, hit.position) / survival;
+    bool is_cloud = lighting_has(LIGHTING_SCATTERS) && object_material_at(place.object) == uint(MATERIAL_CLOUD);
+    vec3 albedo = vec3(0.0);
+    if (!is_cloud) albedo = albedo_at(place.object, slot, hit.position);
+    throughput *= (is_cloud ? hit.normal : albedo) / survival;
 }
 
 // The ray of these channels, which is the `to`th of the next wave where it goes on.

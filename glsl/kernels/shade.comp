@@ -36,8 +36,12 @@ void main() {
     Path path = path_of(ray);
     LitHit hit = lit_hit_at(ray);
     vec3 light = gathered(at, path.pixel);
-    vec3 albedo = albedo_at(polynomial_object_at(hit.slot), hit.slot, hit.position);
-    vec3 seen = through_volumes(path, path.throughput * scattered(polynomial_object_at(hit.slot), light, albedo));
+    uint object = polynomial_object_at(hit.slot);
+    bool is_cloud = lighting_has(LIGHTING_SCATTERS) && object_material_at(object) == uint(MATERIAL_CLOUD);
+    vec3 albedo = vec3(0.0);
+    if (!is_cloud) albedo = albedo_at(object, hit.slot, hit.position);
+    albedo = is_cloud ? hit.normal : albedo;
+    vec3 seen = through_volumes(path, path.throughput * scattered(object, light, albedo));
     if (lighting_has(LIGHTING_CLAMP)) {
         bool indirect = (path.channels & uint(PATH_SCATTERED | PATH_INDIRECT)) != 0u;
         seen = indirect ? limited(path.channels, seen) : seen;

@@ -92,6 +92,14 @@ float depth_of_absorptance(float x) {
     return 2.0 * (t + t * (z * p));
 }
 
+// -ln(1 - u) for u from 0 to 1 - 2^-24: the optical depth that takes u. Error under 4 ulp, and 1e-7 near 0.
+float depth_of_chance(float u) {
+    uint bits = floatBitsToUint(1.0 - u);
+    float halvings = float(126 - int(bits >> 23)); // 1 - u is m by 2^-halvings, and m from 1/2 to 1
+    float m = uintBitsToFloat((bits & 0x7fffffu) | 0x3f000000u);
+    return max(depth_of_absorptance(1.0 - m) + halvings * 0.693147181, 0.0);
+}
+
 // Sine and cosine for |x| <= pi / 4. Error under 1 ulp. Polynomials after Moshier's Cephes, sinf.c.
 float sin_octant(float x) {
     float z = x * x;

@@ -22,7 +22,8 @@
 #define SAMPLE_LIGHT 4096 // For the place on a light: one a light from here on
 #define SAMPLE_SCATTER 8192 // For the direction that light is scattered in: one a bounce from here on
 #define SAMPLE_SURVIVAL 12288 // For whether a path goes on: one a bounce from here on
-#define SAMPLE_DISTANCE 16384 // For how far a ray comes in volumes: one a bounce from here on
+#define SAMPLE_DISTANCE 0x80000000u // For how far a ray comes in volumes that scatter it: one a bounce from here on, so many for each surface that it has passed as if there were nothing
+#define DISTANCES_A_CROSSING 2048 // See SAMPLE_DISTANCE
 #define SAMPLES_A_BOUNCE 65536 // Numbers of a bounce, of paths that light takes from surface to surface
 
 // Push constants of camera_rays.

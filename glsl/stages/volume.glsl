@@ -39,7 +39,7 @@ struct VolumeInfo { // 96 bytes
     uint mode;                       //  76 What a ray shows: one of VOLUME_EMISSION and so on.
     float iso;                       //  80 Scalar on an isosurface; of other modes, the mean cosine of the angle that light is scattered by.
     uint slot;                       //  84 Of the polynomial that stands for an isosurface, behind those of all points; of other modes, 1 where anything has an emission.
-    uint refracts;                   //  88 1: an isosurface of glass, which rays are inside or outside.
+    uint refracts;                   //  88 1: an isosurface of glass, which rays are inside or outside; of a volume that scatters rays, the slot of the polynomial that stands for it.
     uint shading;                    //  92 What light does in it: one of VOLUME_EMITS and so on.
 };
 
@@ -111,6 +111,16 @@ struct March { // 80 bytes
     float along;                     //  76 For the channels of volumes: the depth along the viewing axis where half of what is lost is lost, or below 0; of other modes than emission, the scalar that is shown.
 };
 
+// What a ray needs beside its march where volumes scatter it.
+struct MarchScatter { // 32 bytes
+    vec3 step_color;                 //   0 Colour by extinction, of the scattering volumes of this step so far.
+    float step_extinction;           //  12 Their extinction.
+    float most;                      //  16 Most of one of them.
+    uint slot;                       //  20 The slot that stands for that one.
+    float depth;                     //  24 Their optical depth so far.
+    float lost;                      //  28 What rounding added to it.
+};
+
 // What a sample of a lit volume needs beside its scalar.
 struct MarchLight { // 48 bytes
     vec3 pull;                       //   0 Sum of the weights' gradients, by the scalars.
@@ -141,7 +151,7 @@ struct IsoSearch { // 80 bytes
 };
 
 // Push constants of march.
-struct MarchParams { // 48 bytes
+struct MarchParams { // 64 bytes
     vec3 forward;                    //   0 Viewing axis.
     uint ray_count;                  //  12 Rays.
     uint volume_count;               //  16 Volumes of the scene.
@@ -149,7 +159,11 @@ struct MarchParams { // 48 bytes
     uint work;                       //  24 Loop iterations a ray may spend in this pass.
     uint light_count;                //  28 Lights, where volumes are lit.
     uint wants_depth;                //  32 1: along is asked for.
-    uint pad[3];                     //  36 Unused.
+    uint sample_index;               //  36 Where volumes scatter rays: which sample of each pixel, or NONE.
+    uint seed;                       //  40 Of all that is random.
+    uint tile_width;                 //  44 Columns of the tile.
+    uvec2 tile_origin;               //  48 The tile's first pixel in the full image.
+    uvec2 pad;                       //  56 Unused.
 };
 
 // Push constants of point_rays and point_lights.
@@ -324,7 +338,9 @@ vec4 stop_emission_rest_at(uint at) {
 
 #define MARCH_LIGHTS 88 // By ray, where volumes are lit
 
-#define VISIBLE 89 // What of each light's reaches each point of a volume
+#define MARCH_SCATTERS 89 // By ray, where volumes scatter rays
+
+#define VISIBLE 90 // What of each light's reaches each point of a volume
 #ifdef TEXELS
 layout(binding = VISIBLE) uniform usamplerBuffer visible_texels;
 
@@ -339,5 +355,5 @@ vec4 visible_at(uint at) {
 }
 #endif
 
-#define ISO_SEARCHES 90 // By ray
+#define ISO_SEARCHES 91 // By ray
 #endif

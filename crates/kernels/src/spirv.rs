@@ -96,6 +96,8 @@ axes! {
         Wave = "" [],
         /// Those of a wave, where lamps light volumes.
         Lit = "lit" [LIT],
+        /// Those of a wave, where volumes scatter them.
+        Scattered = "scattered" [SCATTERED],
         /// Shadow rays.
         Shadows = "shadows" [SHADOWS],
     }

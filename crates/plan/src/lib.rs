@@ -268,6 +268,7 @@ impl Plan {
             (&mut list, &mut found),
         )?;
         color_isosurfaces(scene, &volumes, &mut objects);
+        objects.extend(volumes.cloud_objects());
         let channel_alpha = objects.iter().any(materials::tells_channels_apart);
         let camera = match scene.camera.whole() {
             Some(camera) => camera,
@@ -421,7 +422,7 @@ impl Plan {
     /// Whether a pixel has a ray through its centre beside its samples.
     #[must_use]
     pub fn takes_centers(&self) -> bool {
-        self.aovs && self.samples > 1
+        self.aovs && (self.samples > 1 || self.volumes.any_cloud())
     }
 
     /// Whether that ray is followed to its end, since somebody counts what the rays of a pixel do, or asks for volumes that

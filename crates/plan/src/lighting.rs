@@ -1,12 +1,12 @@
 //! How a scene is lit: what lights it beside its lamps, and what kernels have to do for it, as bits that they are specialized
 //! by.
 
+use crate::Plan;
 use crate::environment::EnvironmentTable;
-use crate::{Plan, materials};
 use kernels::layout::{
     ImageInfo, LIGHT_ENVIRONMENT, LIGHT_POINT, LIGHT_SKY, LIGHT_SUN, LIGHTING_ANISOTROPY,
-    LIGHTING_CLAMP, LIGHTING_LAMPS, LIGHTING_PATH, LIGHTING_SKY, LIGHTING_SUN, LIGHTING_TABLE,
-    Light,
+    LIGHTING_CLAMP, LIGHTING_LAMPS, LIGHTING_PATH, LIGHTING_SCATTERS, LIGHTING_SKY, LIGHTING_SUN,
+    LIGHTING_TABLE, Light,
 };
 use scene::{Integrator, Scene};
 
@@ -106,7 +106,8 @@ impl Plan {
             (LIGHTING_LAMPS, self.meets_lamps()),
             (LIGHTING_SUN, self.shows_sun),
             (LIGHTING_CLAMP, self.follows_paths() && self.clamp.is_some()),
-            (LIGHTING_ANISOTROPY, self.objects.iter().any(materials::is_uneven_cloud)),
+            (LIGHTING_SCATTERS, self.volumes.any_cloud()),
+            (LIGHTING_ANISOTROPY, self.volumes.any_anisotropy()),
         ]
         .into_iter()
         .fold(0, |bits, (bit, is_set)| if is_set { bits | bit } else { bits })

@@ -2,9 +2,9 @@
 
 use bytemuck::Zeroable;
 use kernels::layout::{
-    MATERIAL_CLOUD, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_INSIDE, MATERIAL_LIT,
-    MATERIAL_MATTE, MATERIAL_MIRROR, MATERIAL_SENDS, ObjectInfo, SCENE_ABSORBS, SCENE_DISPERSES,
-    SCENE_GLOSSY, SCENE_LIT, SCENE_NESTED, SCENE_SCATTERS,
+    MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_INSIDE, MATERIAL_LIT, MATERIAL_MATTE,
+    MATERIAL_MIRROR, MATERIAL_SENDS, ObjectInfo, SCENE_ABSORBS, SCENE_DISPERSES, SCENE_GLOSSY,
+    SCENE_LIT, SCENE_NESTED, SCENE_SCATTERS,
 };
 use scene::{Albedo, Integrator, Material, MaterialKind};
 
@@ -43,11 +43,6 @@ pub(crate) fn info_of(material: &Material, integrator: Integrator) -> ObjectInfo
 #[must_use]
 pub fn is_lit(object: &ObjectInfo) -> bool {
     object.material & MATERIAL_LIT != 0
-}
-
-/// Whether it is a volume that scatters light to some sides more than to others.
-pub(crate) fn is_uneven_cloud(object: &ObjectInfo) -> bool {
-    object.material == MATERIAL_CLOUD && object.weight_scale != 0.0
 }
 
 /// Whether rays go on from the surface.

@@ -77,12 +77,16 @@ impl Asked<'_> {
             let colored = info.first_color != NONE || info.texture != NONE;
             is_lit(info) && (colored || info.albedo != [0.0; 3])
         };
-        (0..self.plan.objects.len())
+        (0..self.plan.names.len())
             .find(|&object| scatters(object) || self.has_surface(object) && shows_light(object))
     }
 
     fn is_unlit(&self) -> Option<String> {
         let object = self.needs_light()?;
+        let glows = self.plan.follows_paths() && self.plan.volumes.any_marched();
+        if self.plan.sky_lights() || glows {
+            return None;
+        }
         if self.plan.lights.iter().any(|light| light.strength.iter().any(|x| *x > 0.0)) {
             return None;
         }
@@ -106,6 +110,9 @@ impl Asked<'_> {
     fn is_enclosed(&self) -> Option<String> {
         self.needs_light()?;
         let plan = self.plan;
+        if plan.sky_lights() {
+            return None;
+        }
         let shining = || plan.lights.iter().filter(|light| light.strength.iter().any(|x| *x > 0.0));
         let are_points = shining().all(|light| light.kind == LIGHT_POINT);
         if !(are_points
@@ -120,12 +127,13 @@ impl Asked<'_> {
             votes.is_clear().then(|| votes.says_inside())
         };
         let closes = |object: &usize| {
-            let is_opaque = !sends_rays_on(&plan.objects[*object]);
+            let info = &plan.objects[*object];
+            let is_opaque = is_lit(info) || !sends_rays_on(info);
             is_opaque
                 && shining().all(|light| around(*object, light.vector) == Some(true))
                 && around(*object, plan.camera.eye) == Some(false)
         };
-        let object = (0..plan.objects.len()).find(closes)?;
+        let object = (0..plan.names.len()).find(closes)?;
         Some(format!(
             "object '{}' encloses every light, and the camera is outside, where it is dark; move lights.0.position \
              outside, or add a light of kind \"headlight\"",
@@ -146,7 +154,7 @@ impl Asked<'_> {
             is_lit(info) || (!is_black && dims(info))
         };
         let surfaces: Vec<usize> =
-            (0..plan.objects.len()).filter(|&object| self.has_surface(object)).collect();
+            (0..plan.names.len()).filter(|&object| self.has_surface(object)).collect();
         if marched || surfaces.is_empty() || surfaces.iter().any(shows) {
             return None;
         }
@@ -171,7 +179,7 @@ impl Asked<'_> {
             let shows_rays_alone = sends_rays_on(info) && !is_lit(info);
             shows_rays_alone && !may_pass && self.has_surface(object)
         };
-        let object = (0..self.plan.objects.len()).find(scattering)?;
+        let object = (0..self.plan.names.len()).find(scattering)?;
         (self.plan.wave.max_bounces == 0).then(|| {
             format!(
                 "object '{}' shows only the background: render.max_bounces is 0, so that rays end at mirrors and glass; \

@@ -16,14 +16,16 @@ use crate::missing::{Lacking, Missing};
 use crate::neighborhoods::{length, open_points, spacing};
 use crate::steep;
 use crate::transfer::{own_range, stops_of};
+use bytemuck::Zeroable;
 use kernels::layout::{
-    Polynomial, SCENE_GLOWS, SCENE_MANY_VOLUMES, SCENE_PARTICLES, SCENE_STEEP, SCENE_WEIGHTS,
-    SCENE_WHOLES, VOLUME_AVERAGE, VOLUME_EMITS, VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_LIGHTS,
-    VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH, VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
+    MATERIAL_CLOUD, NONE, ObjectInfo, Polynomial, SCENE_GLOWS, SCENE_MANY_VOLUMES, SCENE_PARTICLES,
+    SCENE_STEEP, SCENE_WEIGHTS, SCENE_WHOLES, VOLUME_AVERAGE, VOLUME_EMISSION, VOLUME_EMITS,
+    VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_LIGHTS, VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH,
+    VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
 };
 use particles::{Particle, Sph};
 use points::{Cloud, PointSet, Watch, bounds_of};
-use scene::{Boundary, Object, Scene, Transfer, VolumeKernel, VolumeMode};
+use scene::{Boundary, Integrator, Object, Scene, Transfer, VolumeKernel, VolumeMode};
 use std::sync::Arc;
 
 /// Samples that a ray may take.
@@ -46,6 +48,9 @@ pub struct Volumes {
     pub stops: Vec<VolumeStop>,
     /// Length of the steps along a ray: the shortest that a volume asks for.
     pub step: f32,
+    /// Where light goes from surface to surface: the first of the objects, after those of the scene, that stand for
+    /// volumes which scatter rays.
+    pub first_cloud: Option<u32>,
 }
 
 /// The points of an object that carry its surface.
@@ -213,7 +218,11 @@ pub(crate) fn plan_volumes(
     if let Some(info) = volumes.infos.iter().find(alone).filter(|_| count > 1) {
         return Err(PlanError::SeveralVolumes { name: name(info), count });
     }
+    if scene.render.integrator == Integrator::Path {
+        volumes.first_cloud = Some(scene.objects.len() as u32);
+    }
     let lit = volumes.infos.iter().find(|info| info.shading != VOLUME_EMITS);
+    let lit = lit.filter(|_| volumes.any_lit());
     let has_sun = scene.background_lights() && scene.background.sky.is_some();
     let lights = scene.lights.len() + usize::from(has_sun);
     if let Some(info) = lit.filter(|_| lights > VOLUME_LIGHTS as usize) {
@@ -229,12 +238,24 @@ pub(crate) fn plan_volumes(
     {
         info.slot = slot;
     }
+    if volumes.first_cloud.is_some() {
+        let first = cloud.points.len() as u32 + volumes.isosurfaces().count() as u32;
+        let scattering = volumes.infos.iter_mut().filter(|info| scatters(info));
+        for (slot, info) in (first..).zip(scattering) {
+            info.refracts = slot;
+        }
+    }
     Ok(volumes)
 }
 
 /// Whether one scalar stands for the whole way of a ray.
 fn is_whole(info: &VolumeInfo) -> bool {
     [VOLUME_MAXIMUM, VOLUME_AVERAGE, VOLUME_INTEGRAL].contains(&info.mode)
+}
+
+/// Whether its colours are the share of light that is scattered.
+fn scatters(info: &VolumeInfo) -> bool {
+    info.mode == VOLUME_EMISSION && info.shading != VOLUME_EMITS
 }
 
 fn has_emission(stop: &VolumeStop) -> bool {
@@ -267,10 +288,44 @@ impl Volumes {
         self.infos.iter().any(|info| info.mode == VOLUME_ISOSURFACE)
     }
 
-    /// Whether the light of the scene counts in any.
+    /// Whether the light of the scene counts in any, as it reaches the points; where light goes from surface to surface,
+    /// it does as it reaches rays.
     #[must_use]
     pub fn any_lit(&self) -> bool {
-        self.infos.iter().any(|info| info.shading != VOLUME_EMITS)
+        self.first_cloud.is_none() && self.infos.iter().any(scatters)
+    }
+
+    /// Those that scatter rays.
+    fn clouds(&self) -> impl Iterator<Item = &VolumeInfo> {
+        self.infos.iter().filter(|info| self.first_cloud.is_some() && scatters(info))
+    }
+
+    /// Whether any scatters rays.
+    #[must_use]
+    pub fn any_cloud(&self) -> bool {
+        self.clouds().next().is_some()
+    }
+
+    /// Whether any scatters light to some sides more than to others.
+    pub(crate) fn any_anisotropy(&self) -> bool {
+        self.infos.iter().any(|info| scatters(info) && info.iso != 0.0)
+    }
+
+    /// The objects that stand for those.
+    pub(crate) fn cloud_objects(&self) -> impl Iterator<Item = ObjectInfo> {
+        let of = |info: &VolumeInfo| ObjectInfo {
+            weight_scale: info.iso,
+            first_color: NONE,
+            texture: NONE,
+            ior: [1.0; 3],
+            material: MATERIAL_CLOUD,
+            ..ObjectInfo::zeroed()
+        };
+        self.clouds().map(of)
+    }
+
+    fn isosurfaces(&self) -> impl Iterator<Item = &VolumeInfo> {
+        self.infos.iter().filter(|info| info.mode == VOLUME_ISOSURFACE)
     }
 
     /// Whether the transfer function of any is steep, and rays may divide steps.
@@ -327,19 +382,21 @@ impl Volumes {
         })
     }
 
-    /// Polynomials without a surface, at the slots of the isosurfaces: they say whose those are.
+    /// Polynomials without a surface, at the slots of the isosurfaces, and after them of the volumes that scatter rays: they
+    /// say whose those are.
     #[must_use]
     pub fn stand_ins(&self) -> Vec<Polynomial> {
-        let isosurfaces = self.infos.iter().filter(|info| info.mode == VOLUME_ISOSURFACE);
-        let stand_in = |info: &VolumeInfo| Polynomial {
+        let stand_in = |object: u32| Polynomial {
             center_trust: [0.0; 4],
             gradient_offset: [0.0, 0.0, 1.0, 0.0],
             curvature: [0.0; 4],
             cross_terms: [0.0; 2],
-            object: info.object,
+            object,
             index: u32::MAX,
         };
-        isosurfaces.map(stand_in).collect()
+        let clouds = (self.first_cloud.unwrap_or_default()..).zip(self.clouds());
+        let objects = self.isosurfaces().map(|info| info.object).chain(clouds.map(|(at, _)| at));
+        objects.map(stand_in).collect()
     }
 
     /// Bytes of all of it.

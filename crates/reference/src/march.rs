@@ -4,7 +4,7 @@ use crate::camera_rays::Ray;
 use crate::grid::within_box;
 use crate::media::{Media, transmittance};
 use crate::real::{NO_HIT, Real, V3};
-use crate::volume::{Lighting, MOST_SAMPLES, Sums, cell_at, is_divided, mean_of, scalar_at};
+use crate::volume::{Lighting, MOST_SAMPLES, Shown, Sums, cell_at, is_divided, mean_of, scalar_at};
 use kernels::layout::{
     CELL_NOTHING, MARCH_PARTS, ObjectInfo, VOLUME_AVERAGE, VOLUME_EMISSION, VOLUME_EMITS,
     VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_MAXIMUM, VOLUME_SPH, VolumeInfo,
@@ -22,12 +22,54 @@ const LARGEST: f64 = 1e38;
 /// What volumes do to a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct March<R> {
+    /// Where one scatters it, if one does.
+    pub scattered: Option<Scattered<R>>,
     /// Emitted towards its start.
     pub color: V3<R>,
     /// Optical depth.
     pub depth: R,
     /// What channels of volumes show (`March::along` in `glsl/stages/volume.glsl`).
     pub along: R,
+}
+
+/// A place where a volume scatters a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scattered<R> {
+    /// Along the ray.
+    pub t: R,
+    /// The share of light that goes on.
+    pub color: V3<R>,
+    /// The slot that stands for the volume.
+    pub slot: u32,
+}
+
+/// What of light counts along a ray.
+#[derive(Debug, Clone, Copy)]
+pub enum Along<'a, R> {
+    /// What volumes emit.
+    Emitted,
+    /// That, and what reaches the points of volumes that are lit.
+    OfLamps(Lighting<'a, R>),
+    /// That, and where the optical depth of volumes that are lit is this, they scatter the ray.
+    Scattered(R),
+}
+
+impl<'a, R: Real> Along<'a, R> {
+    fn lamps(self) -> Option<Lighting<'a, R>> {
+        match self {
+            Self::OfLamps(lighting) => Some(lighting),
+            _ => None,
+        }
+    }
+}
+
+/// Scattering volumes of a step.
+struct Scatter<R> {
+    color: V3<R>,
+    extinction: R,
+    /// The most of one of them, and the slot that stands for it.
+    most: R,
+    slot: u32,
 }
 
 /// Kahan's summation.
@@ -102,7 +144,7 @@ pub(crate) fn is_whole(volume: &VolumeInfo) -> bool {
 fn shown<R: Real>(volume: &VolumeInfo, volumes: &Volumes, [scalar, way]: [R; 2]) -> March<R> {
     let zero = R::of(0.0);
     if way <= zero {
-        return March { color: V3::splat(zero), depth: zero, along: zero };
+        return March { scattered: None, color: V3::splat(zero), depth: zero, along: zero };
     }
     let mean = volume.mode == VOLUME_AVERAGE;
     let scalar = if mean { scalar / way } else { scalar };
@@ -115,7 +157,18 @@ fn shown<R: Real>(volume: &VolumeInfo, volumes: &Volumes, [scalar, way]: [R; 2])
     let depth = seen.extinction * thickness;
     let color = (seen.scattering + seen.emission).times(thickness * depth.mean_transmittance());
     let depth = if depth > R::of(DEEPEST) { R::of(OPAQUE) } else { depth };
-    March { color, depth, along: scalar }
+    March { scattered: None, color, depth, along: scalar }
+}
+
+impl<R: Real> Scatter<R> {
+    fn add(&mut self, volume: &VolumeInfo, of: &Between<R>, seen: &Shown<R>) {
+        let own = of.share * seen.extinction;
+        if own > self.most {
+            (self.most, self.slot) = (own, volume.refracts);
+        }
+        self.color = self.color + seen.scattering.times(of.share);
+        self.extinction = self.extinction + own;
+    }
 }
 
 /// Where a ray passes volumes, in steps.
@@ -273,16 +326,20 @@ pub fn march<R: Real>(
     media: &Media,
     volumes: &Volumes,
     objects: &[ObjectInfo],
-    lighting: Option<Lighting<'_, R>>,
+    light: Along<'_, R>,
 ) -> March<R> {
+    let lighting = light.lamps();
     let zero = R::of(0.0);
     let way = Way::of(ray, end, media, volumes);
     let medium = media.medium(objects);
     let (mut color, mut depth) = ([Sum::zero(); 3], Sum::<R>::zero());
     let mut whole = [Sum::zero(); 2]; // the greatest scalar or the integral of all, and the length in reach
     let mut met = false;
+    let mut scatter_depth = Sum::<R>::zero();
+    let mut scattered = None;
     way.walk(lighting, |place, there, here| {
         let (mut step_color, mut step_extinction) = (V3::splat(zero), zero);
+        let mut scatter = Scatter { color: V3::splat(zero), extinction: zero, most: zero, slot: 0 };
         for (volume, (&there, &here)) in way.taking_part.iter().zip(there.iter().zip(here)) {
             let between = Between::of(volume, there, here);
             if is_whole(volume) {
@@ -302,20 +359,37 @@ pub fn march<R: Real>(
                 if lighting.is_some() {
                     seen.scattering = seen.scattering * of.light;
                 }
+                if matches!(light, Along::Scattered(_)) && volume.shading != VOLUME_EMITS {
+                    scatter.add(volume, &of, &seen);
+                    (seen.scattering, seen.extinction) = (V3::splat(zero), zero);
+                }
                 step_color = step_color + (seen.scattering + seen.emission).times(of.share);
                 step_extinction = step_extinction + of.share * seen.extinction;
             }
         }
-        let step_depth = step_extinction * place.length;
+        let mut length = place.length;
+        if let Along::Scattered(chosen) = light {
+            let depth = scatter.extinction * length;
+            let short_of = chosen - scatter_depth.sum;
+            if depth > zero && depth >= short_of {
+                length = length * (short_of.max(zero) / depth);
+                let color =
+                    scatter.color.over(scatter.extinction).zip(V3::splat(R::of(1.0)), R::min);
+                scattered = Some(Scattered { t: place.begin + length, color, slot: scatter.slot });
+            } else if depth > zero {
+                scatter_depth.add(depth);
+            }
+        }
+        let step_depth = step_extinction * length;
         if step_depth > zero || step_color.0.iter().any(|&channel| channel > zero) {
             let lengths = if medium.is_some() {
                 let absorption =
                     V3::of_f32(objects[medium.unwrap_or_default() as usize].absorption);
-                let depths = V3::splat(step_depth) + absorption.times(place.length);
-                V3(depths.0.map(|depth| place.length * depth.mean_transmittance()))
+                let depths = V3::splat(step_depth) + absorption.times(length);
+                V3(depths.0.map(|depth| length * depth.mean_transmittance()))
                     * transmittance(medium, place.begin, objects)
             } else {
-                V3::splat(place.length * step_depth.mean_transmittance())
+                V3::splat(length * step_depth.mean_transmittance())
             };
             let sent = (lengths * step_color).times((-depth.sum).exp_negative());
             for (sum, sent) in color.iter_mut().zip(sent.0) {
@@ -329,11 +403,14 @@ pub fn march<R: Real>(
             depth.sum = R::of(OPAQUE);
             return ControlFlow::Break(());
         }
-        ControlFlow::Continue(())
+        if scattered.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     match volumes.infos.first() {
         Some(only) if is_whole(only) => shown(only, volumes, whole.map(|of| of.sum)),
-        _ => March { color: V3(color.map(|of| of.sum)), depth: depth.sum, along: R::of(-1.0) },
+        _ => {
+            let color = V3(color.map(|of| of.sum));
+            March { scattered, color, depth: depth.sum, along: R::of(-1.0) }
+        }
     }
 }
 

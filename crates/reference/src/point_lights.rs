@@ -6,7 +6,7 @@ use crate::grid_trace::grid_trace;
 use crate::isosurface::blocks;
 use crate::levels::Levels;
 use crate::light::sample_light;
-use crate::march::march;
+use crate::march::{Along, march};
 use crate::media::Media;
 use crate::real::{Real, V3};
 use crate::to_light::light_through;
@@ -73,7 +73,8 @@ pub fn point_lights<R: Real>(
                     }
                     grid_trace(&mut ray, &levels, &reference.lists, &reference.polynomials, true);
                     if ray.hit_slot == NONE && !blocks(&ray, ray.hit_t, volumes) {
-                        let march = march(&ray, ray.hit_t, &media, volumes, &plan.objects, None);
+                        let march =
+                            march(&ray, ray.hit_t, &media, volumes, &plan.objects, Along::Emitted);
                         *of_light = (-march.depth).exp_negative();
                     }
                 }

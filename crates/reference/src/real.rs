@@ -41,6 +41,8 @@ pub trait Real:
     fn absorptance(self) -> Self;
     /// −ln(1 − x) for 0 ≤ x ≤ ½, with all digits.
     fn depth_of_absorptance(self) -> Self;
+    /// −ln(1 − u) for 0 ≤ u ≤ 1 − 2⁻²⁴.
+    fn depth_of_chance(self) -> Self;
     /// Sine for |x| ≤ π/4.
     fn sin_octant(self) -> Self;
     /// Cosine for |x| ≤ π/4.
@@ -134,6 +136,12 @@ impl Real for f32 {
         2.0 * (t + t * (z * p))
     }
     #[expect(clippy::excessive_precision, reason = "the kernel's digits")]
+    fn depth_of_chance(self) -> Self {
+        let bits = (1.0 - self).to_bits();
+        let halvings = (126 - (bits >> 23) as i32) as Self;
+        let m = Self::from_bits(bits & 0x7f_ffff | 0x3f00_0000);
+        Real::max((1.0 - m).depth_of_absorptance() + halvings * std::f32::consts::LN_2, 0.0)
+    }
     fn sin_octant(self) -> Self {
         let z = self * self;
         let mut p = -1.951_529_589_1e-4;
@@ -199,6 +207,9 @@ impl Real for f64 {
         if self > 80.0 { 1.0 } else { -(-self).exp_m1() }
     }
     fn depth_of_absorptance(self) -> Self {
+        -(-self).ln_1p()
+    }
+    fn depth_of_chance(self) -> Self {
         -(-self).ln_1p()
     }
     fn sin_octant(self) -> Self {

@@ -10,7 +10,7 @@ use crate::camera_rays::Ray;
 use crate::grid_trace::grid_trace;
 use crate::isosurface::{blocks, isosurface};
 use crate::levels::Levels;
-use crate::march::march;
+use crate::march::{Along, march};
 use crate::media::Media;
 use crate::real::{Real, V3};
 use plan::Plan;
@@ -78,6 +78,6 @@ fn marched<R: Real>(plan: &Plan, ray: &Ray<R>, path: &ShadowPath<R>, arriving: V
     if !plan.volumes.any_marched() {
         return arriving;
     }
-    let march = march(ray, ray.hit_t, &path.media, &plan.volumes, &plan.objects, None);
+    let march = march(ray, ray.hit_t, &path.media, &plan.volumes, &plan.objects, Along::Emitted);
     arriving.times((-march.depth).exp_negative())
 }

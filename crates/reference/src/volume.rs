@@ -2,6 +2,7 @@
 
 use crate::grid::{Ball, Grid};
 use crate::light::sample_light;
+use crate::material::cloud::phase;
 use crate::real::{Real, V3};
 use kernels::layout::{
     CELL_KINDS, CELL_NOTHING, Light, VOLUME_GRADIENT, VOLUME_LIGHTS, VOLUME_SHEPARD, VOLUME_SPH,
@@ -239,6 +240,8 @@ impl<R: Real> Sums<R> {
             let light = sample_light(light, x, [R::of(0.5); 2]);
             let share = if steep {
                 normal.dot(light.towards).max(zero) * R::of(FRAC_1_PI)
+            } else if volume.iso != 0.0 {
+                phase(R::of_f32(volume.iso), d.dot(light.towards))
             } else {
                 R::of(0.25 * FRAC_1_PI)
             };

@@ -19,14 +19,15 @@ use crate::film::{count_work, write_first};
 use crate::grid_trace::grid_trace;
 use crate::isosurface::isosurface;
 use crate::levels::Levels;
-use crate::march::{March, half_lost, is_whole, march};
+use crate::march::{Along, March, half_lost, is_whole, march};
 use crate::media::Media;
 use crate::path::Path;
 use crate::real::{NO_HIT, Real, V3};
+use crate::sampler::sample_1d;
 use crate::sky::Sky;
 use crate::surface_hit::Hit;
 use crate::volume::Lighting;
-use kernels::layout::{FilmPixel, WaveParams};
+use kernels::layout::{DISTANCES_A_CROSSING, FilmPixel, NONE, SAMPLE_DISTANCE, WaveParams};
 use plan::{Plan, Rays};
 
 /// What volumes have done to a ray before its end, where light goes from surface to surface.
@@ -88,7 +89,9 @@ impl<R: Real> PixelTrace<'_, R> {
             if self.ends_at_first {
                 let end = hit.as_ref().map_or(R::of(NO_HIT), |(hit, _)| hit.t);
                 let wants = self.plan.wants_along();
-                let march = wants.then(|| self.march(&ray, end, &path.media, self.lighting()));
+                let light =
+                    if self.plan.follows_paths() { Along::Emitted } else { self.lighting() };
+                let march = wants.then(|| self.march(&ray, end, &path.media, light));
                 if let Some(march) = march.flatten() {
                     self.film.along = self.along(&ray, end, &path.media, &march).to_f32();
                 }
@@ -108,18 +111,28 @@ impl<R: Real> PixelTrace<'_, R> {
     fn interact(
         &mut self,
         ray: &Ray<R>,
-        hit: Option<(Hit<R>, u32)>,
+        mut hit: Option<(Hit<R>, u32)>,
         mut path: Path<R>,
         from_camera: bool,
         rays: &mut Vec<(Ray<R>, Path<R>)>,
     ) {
+        let ray = &mut ray.clone();
         let end = hit.as_ref().map_or(R::of(NO_HIT), |(hit, _)| hit.t);
-        let marched = self.march(ray, end, &path.media, self.lighting());
+        let marched = self.march(ray, end, &path.media, self.light_along(&path));
         let mut passed = Passed { sent: V3::splat(R::of(0.0)), depth: R::of(0.0) };
         if let Some(march) = marched {
             let through = path.throughput.times((-path.depth).exp_negative());
             if self.plan.follows_paths() {
                 passed = Passed { sent: path.throughput * march.color, depth: march.depth };
+                if let Some(at) = march.scattered {
+                    let position = ray.origin + ray.direction.times(at.t);
+                    let met = Hit { position, t: at.t, normal: at.color };
+                    hit = Some((met, self.reference.polynomials[at.slot as usize].object));
+                    (ray.hit_slot, ray.hit_t) = (at.slot, at.t);
+                    if from_camera {
+                        self.film.color[3] = 1.0;
+                    }
+                }
             } else {
                 path.emitted = path.emitted + through * march.color;
                 path.depth = path.depth + march.depth;
@@ -141,15 +154,9 @@ impl<R: Real> PixelTrace<'_, R> {
     }
 
     /// What the volumes of the scene do to a ray; `None` where there are none.
-    fn march(
-        &self,
-        ray: &Ray<R>,
-        end: R,
-        media: &Media,
-        lighting: Option<Lighting<'_, R>>,
-    ) -> Option<March<R>> {
+    fn march(&self, ray: &Ray<R>, end: R, media: &Media, light: Along<'_, R>) -> Option<March<R>> {
         let volumes = &self.plan.volumes;
-        volumes.any_marched().then(|| march(ray, end, media, volumes, &self.plan.objects, lighting))
+        volumes.any_marched().then(|| march(ray, end, media, volumes, &self.plan.objects, light))
     }
 
     /// What channels of volumes show of a camera ray.
@@ -171,10 +178,23 @@ impl<R: Real> PixelTrace<'_, R> {
         }
     }
 
-    fn lighting(&self) -> Option<Lighting<'_, R>> {
-        self.plan
-            .volumes
-            .any_lit()
-            .then_some(Lighting { visible: &self.reference.visible, lights: self.plan.lamps() })
+    fn lighting(&self) -> Along<'_, R> {
+        let (visible, lights) = (&self.reference.visible, self.plan.lamps());
+        match self.plan.volumes.any_lit() {
+            true => Along::OfLamps(Lighting { visible, lights }),
+            false => Along::Emitted,
+        }
+    }
+
+    /// The light that counts along a path's ray.
+    fn light_along(&self, path: &Path<R>) -> Along<'_, R> {
+        if !self.plan.follows_paths() {
+            return self.lighting();
+        }
+        let WaveParams { sample_index, seed, .. } = *self.params;
+        let index = if sample_index == NONE { 0 } else { sample_index };
+        let dimension = SAMPLE_DISTANCE + path.bounces + DISTANCES_A_CROSSING * path.crossings;
+        let drawn: R = sample_1d(self.pixel, index, seed, dimension);
+        Along::Scattered(drawn.depth_of_chance())
     }
 }

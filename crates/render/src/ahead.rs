@@ -3,7 +3,7 @@
 use crate::RenderError;
 use crate::marks::Marks;
 use crate::renderer::{Renderer, longest_list, needed, wave_rays};
-use crate::stages::drawing_of;
+use crate::stages::{drawing_of, marching_of};
 use crate::state::RayLoop;
 use crate::structure;
 use gpu::{Device, Kernel};
@@ -69,7 +69,7 @@ fn likely_modules(device: &Arc<Device>, plan: &Plan) -> [Vec<&'static Module>; 3
     if any_points {
         then.extend(of_tile.tile);
     }
-    let any_surface = any_points || plan.volumes.any_isosurface();
+    let any_surface = any_points || plan.volumes.any_isosurface() || plan.volumes.any_cloud();
     let any_lit = any_surface && plan.scene_bits() & SCENE_LIT != 0;
     let is_lit = any_lit && !plan.lights.is_empty();
     let scatters = any_surface && plan.scatters();
@@ -92,9 +92,8 @@ fn likely_modules(device: &Arc<Device>, plan: &Plan) -> [Vec<&'static Module>; 3
     let (_, from_surfaces) = through(RaysFrom::Surface, Start::Surface);
     when(is_lit || scatters || points_lit, from_surfaces.trace.as_slice());
     when(!plan.lights.is_empty() || plan.scatters(), &Marks::modules());
-    let (marched, lit) = (plan.volumes.any_marched(), plan.volumes.any_lit());
-    let marching = if lit { Marching::Lit } else { Marching::Wave };
-    when(marched, &[spirv::march(marching, rays)]);
+    let marched = plan.volumes.any_marched();
+    when(marched, &[spirv::march(marching_of(plan), rays)]);
     when(marched && (is_lit || points_lit), &[spirv::march(Marching::Shadows, rays)]);
     let isosurfaces = plan.volumes.any_isosurface();
     when(isosurfaces, &[spirv::isosurface(Searching::Wave, rays)]);

@@ -7,9 +7,10 @@ use kernels::layout::{
     CAMERA_FILTER, CAMERA_PATH, CELL_OFFSETS, CELLS, COLORS, ENVIRONMENT_TABLE, FILM, FILM_SUMS,
     FilmPixel, FilmSum, HITS, Hit, IMAGES, ISO_SEARCHES, IsoSearch, LEVELS, LIGHT_SUMS, LIGHTS,
     LISTED_POINTS, LIT_HITS, LIT_MARKS, LIT_RAYS, LIVE, LightSum, LitHit, MARCH_ENDS, MARCH_LIGHTS,
-    MARCHES, March, MarchLight, NEXT_MARKS, NEXT_OFFSETS, OBJECTS, OUTCOMES, POLYNOMIALS, Path,
-    SCATTERING_MARKS, SCATTERING_RAYS, SHADOW_PATHS, SLOTS, TALLY, TEXELS_OF_IMAGES, VISIBLE,
-    VOLUME_CELLS, VOLUME_LENGTHS, VOLUME_LIGHTS, VOLUME_POINTS, VOLUME_STOPS, VOLUMES,
+    MARCH_SCATTERS, MARCHES, March, MarchLight, MarchScatter, NEXT_MARKS, NEXT_OFFSETS, OBJECTS,
+    OUTCOMES, POLYNOMIALS, Path, SCATTERING_MARKS, SCATTERING_RAYS, SHADOW_PATHS, SLOTS, TALLY,
+    TEXELS_OF_IMAGES, VISIBLE, VOLUME_CELLS, VOLUME_LENGTHS, VOLUME_LIGHTS, VOLUME_POINTS,
+    VOLUME_STOPS, VOLUMES,
 };
 use plan::{Plan, Volumes, Window};
 use points::device::Surfaces;
@@ -214,6 +215,8 @@ pub(crate) struct VolumeBuffers {
     pub marches: Buffer,
     /// Beside the marches, where volumes are lit.
     pub march_lights: Buffer,
+    /// Beside the marches, where volumes scatter rays.
+    pub march_scatters: Buffer,
     /// In the search for isosurfaces.
     pub searches: Buffer,
 }
@@ -238,6 +241,12 @@ impl VolumeBuffers {
         let own = Self {
             marches: of("marches", true, rays, size_of::<March>())?,
             march_lights: of("light of marches", lit, rays, size_of::<MarchLight>())?,
+            march_scatters: of(
+                "scattering of marches",
+                volumes.first_cloud.is_some(),
+                rays,
+                size_of::<MarchScatter>(),
+            )?,
             searches: of("searches", volumes.any_isosurface(), rays, size_of::<IsoSearch>())?,
         };
         let (lengths, stops) = (&volumes.inverse_lengths, &volumes.stops);
@@ -253,6 +262,7 @@ impl VolumeBuffers {
             .buffer(MARCHES, &own.marches)
             .buffer(MARCH_ENDS, &ends)
             .buffer(MARCH_LIGHTS, &own.march_lights)
+            .buffer(MARCH_SCATTERS, &own.march_scatters)
             .buffer(VISIBLE, &visible)
             .buffer(ISO_SEARCHES, &own.searches);
         Ok((Some(own), table))

@@ -3,14 +3,9 @@
 //
 // twin  crates/reference/src/material/cloud.rs
 
-#define INVERSE_SPHERE 0.0795774715 // 1 / 4 pi
-#define NEARLY_EVEN 1e-2 // below, directions are drawn by a series in g, whose error is g cubed
+#include "phase.glsl"
 
-// The share of light that is scattered by an angle of this cosine, per steradian.
-float phase(float g, float cosine) {
-    float square = max((1.0 + g * g) - (2.0 * g) * cosine, 1e-6);
-    return ((1.0 - g * g) / (square * sqrt(square))) * INVERSE_SPHERE;
-}
+#define NEARLY_EVEN 1e-2 // below, directions are drawn by a series in g, whose error is g cubed
 
 float cloud_g(Place place) {
     return lighting_has(LIGHTING_ANISOTROPY) ? object_weight_scale_at(place.object) : 0.0;

@@ -43,8 +43,11 @@ stage! {
         SAMPLE_SCATTER = 8192;
         /// For whether a path goes on: one a bounce from here on.
         SAMPLE_SURVIVAL = 12288;
-        /// For how far a ray comes in volumes: one a bounce from here on.
-        SAMPLE_DISTANCE = 16384;
+        /// For how far a ray comes in volumes that scatter it: one a bounce from here on, so many for each surface that it has
+        /// passed as if there were nothing.
+        SAMPLE_DISTANCE = 0x8000_0000;
+        /// See [`SAMPLE_DISTANCE`].
+        DISTANCES_A_CROSSING = 2048;
         /// Numbers of a bounce, of paths that light takes from surface to surface.
         SAMPLES_A_BOUNCE = 65536;
     }

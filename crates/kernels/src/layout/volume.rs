@@ -61,6 +61,8 @@ stage! {
         MARCH_ENDS: f32;
         /// By ray, where volumes are lit.
         MARCH_LIGHTS: MarchLight;
+        /// By ray, where volumes scatter rays.
+        MARCH_SCATTERS: MarchScatter;
         /// What of each light's reaches each point of a volume.
         VISIBLE: [f32; 4] as visible;
         /// By ray.
@@ -96,7 +98,8 @@ stage! {
             /// Of the polynomial that stands for an isosurface, behind those of all points; of other modes, 1 where anything has an
             /// emission.
             slot: u32,
-            /// 1: an isosurface of glass, which rays are inside or outside.
+            /// 1: an isosurface of glass, which rays are inside or outside; of a volume that scatters rays, the slot of the
+            /// polynomial that stands for it.
             refracts: u32,
             /// What light does in it: one of `VOLUME_EMITS` and so on.
             shading: u32,
@@ -171,6 +174,21 @@ stage! {
             /// of other modes than emission, the scalar that is shown.
             along: f32,
         }
+        /// What a ray needs beside its march where volumes scatter it.
+        MarchScatter {
+            /// Colour by extinction, of the scattering volumes of this step so far.
+            step_color: [f32; 3],
+            /// Their extinction.
+            step_extinction: f32,
+            /// Most of one of them.
+            most: f32,
+            /// The slot that stands for that one.
+            slot: u32,
+            /// Their optical depth so far.
+            depth: f32,
+            /// What rounding added to it.
+            lost: f32,
+        }
         /// What a sample of a lit volume needs beside its scalar.
         MarchLight {
             /// Sum of the weights' gradients, by the scalars.
@@ -235,8 +253,16 @@ stage! {
             light_count: u32,
             /// 1: `along` is asked for.
             wants_depth: u32,
+            /// Where volumes scatter rays: which sample of each pixel, or `NONE`.
+            sample_index: u32,
+            /// Of all that is random.
+            seed: u32,
+            /// Columns of the tile.
+            tile_width: u32,
+            /// The tile's first pixel in the full image.
+            tile_origin: [u32; 2],
             /// Unused.
-            pad: [u32; 3],
+            pad: [u32; 2],
         }
         /// Push constants of `point_rays` and `point_lights`.
         PointLightParams {

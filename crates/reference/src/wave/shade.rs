@@ -5,6 +5,7 @@ use crate::camera_rays::Ray;
 use crate::direction::{packed_direction, unpacked_direction};
 use crate::film::{count_work, write_channels};
 use crate::isosurface::blocks;
+use crate::march::Along;
 use crate::material::{Place, scattered};
 use crate::media::Media;
 use crate::path::Path;
@@ -66,7 +67,7 @@ impl<R: Real> PixelTrace<'_, R> {
         if ray.hit_slot != NONE || blocks(&ray, ray.hit_t, &self.plan.volumes) {
             return None;
         }
-        Some(match self.march(&ray, ray.hit_t, media, None) {
+        Some(match self.march(&ray, ray.hit_t, media, Along::Emitted) {
             Some(march) => arriving.times((-march.depth).exp_negative()),
             None => arriving,
         })

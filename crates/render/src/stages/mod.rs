@@ -11,3 +11,4 @@ mod volumes;
 
 pub(crate) use fate::Fates;
 pub(crate) use light::drawing_of;
+pub(crate) use volumes::marching_of;

@@ -5,10 +5,21 @@ use crate::frame::{Frame, Wave};
 use crate::renderer::Renderer;
 use crate::stats::Traced;
 use gpu::Bindings;
-use kernels::layout::{self, LIT_RAYS, MarchParams, PATHS, PointLightParams, VOLUME_EMITS};
+use kernels::layout::{
+    self, LIT_RAYS, MarchParams, PATHS, PointLightParams, VOLUME_EMITS, WaveParams,
+};
 use kernels::spirv::{self, Marching, Searching};
-use plan::CENTER;
+use plan::{CENTER, Plan};
 use points::device::line;
+
+/// What volumes do to the rays of a plan's waves.
+pub(crate) fn marching_of(plan: &Plan) -> Marching {
+    match (plan.follows_paths(), plan.volumes.any_lit()) {
+        (true, _) => Marching::Scattered,
+        (false, true) => Marching::Lit,
+        (false, false) => Marching::Wave,
+    }
+}
 
 impl Frame<'_> {
     /// The way of a wave's rays through the volumes of the scene, if it has any. Where only the first surface is asked for,
@@ -25,25 +36,30 @@ impl Frame<'_> {
         // It is asked for how far along the viewing axis light is lost.
         let wants_depth = is_center && self.plan.wants_volume_depth();
         let forward = if wants_depth { wave.params.forward } else { [0.0; 3] };
-        let of = if self.plan.volumes.any_lit() { Marching::Lit } else { Marching::Wave };
+        let of = match ends_at_first {
+            true if self.plan.follows_paths() => Marching::Wave,
+            _ => marching_of(&self.plan),
+        };
         let own = self.renderer.rays.state.in_place();
         let own = own.buffer(PATHS, self.renderer.buffers.wave.paths());
-        self.march(wave.params.ray_count, of, &own, (forward, wants_depth))
+        self.march(&wave.params, of, &own, (forward, wants_depth))
     }
 
     /// The way of shadow rays.
     pub fn shadow_march(&mut self, ray_count: u32) -> Result<(), RenderError> {
         let own = self.with_shadow_media(self.renderer.rays.shadows.in_place());
-        self.march(ray_count, Marching::Shadows, &own, ([0.0; 3], false))
+        let params = WaveParams { ray_count, ..WaveParams::default() };
+        self.march(&params, Marching::Shadows, &own, ([0.0; 3], false))
     }
 
     fn march(
         &mut self,
-        ray_count: u32,
+        wave: &WaveParams,
         of: Marching,
         own: &Bindings,
         (forward, wants_depth): ([f32; 3], bool),
     ) -> Result<(), RenderError> {
+        let ray_count = wave.ray_count;
         let Renderer { buffers, run, .. } = &mut *self.renderer;
         let any = self.plan.volumes.any_marched();
         let Some(volumes) = buffers.volumes.as_ref().filter(|_| any) else { return Ok(()) };
@@ -53,10 +69,22 @@ impl Frame<'_> {
             let bytes = bytes(size_of::<layout::MarchLight>());
             run.recorder.fill(&volumes.march_lights, 0, bytes, 0);
         }
+        if of == Marching::Scattered {
+            let bytes = bytes(size_of::<layout::MarchScatter>());
+            run.recorder.fill(&volumes.march_scatters, 0, bytes, 0);
+        }
         let module = spirv::march(of, self.rays());
         self.until_none_lives(u32::MAX, None, |frame, _| {
             let wants_depth = u32::from(wants_depth);
-            let params = MarchParams { forward, wants_depth, ..frame.march_params(ray_count) };
+            let params = MarchParams {
+                forward,
+                wants_depth,
+                sample_index: wave.sample_index,
+                seed: wave.seed,
+                tile_width: wave.tile_size[0],
+                tile_origin: wave.tile_origin,
+                ..frame.march_params(ray_count)
+            };
             frame.dispatch(module, own, &params, line(ray_count));
         })
         .map(|_| ())
@@ -98,6 +126,9 @@ impl Frame<'_> {
     /// for that of the volume's own object, and through volumes.
     pub fn light_points(&mut self) -> Result<(), RenderError> {
         let plan = std::sync::Arc::clone(&self.plan);
+        if !plan.volumes.any_lit() {
+            return Ok(());
+        }
         let rays = self.renderer.buffers.wave.shadow_rays();
         let all = (0u32..).zip(plan.volumes.point_ranges());
         for (volume, (_, range)) in all.filter(|(_, (info, _))| info.shading != VOLUME_EMITS) {
