@@ -98,6 +98,13 @@ fn what_volumes_and_refinement_take_is_foreseen() {
     let refined = format!(
         "{size}{LIT}[[objects]]\npoints = \"a.ply\"\nsurface = {{ polynomial = \"incomplete\", refine = \"project\" }}\n"
     );
+    // Light goes on through it to the disc of the matt ball, which is seen beside it.
+    let glass = volume(
+        "radius = 0.3, step = 0.1, kernel = \"sum\", mode = \"isosurface\", iso = 0.5",
+    ) + "material = { kind = \"glass\" }\n[[objects]]\npoints = \"b.ply\"\ntransform.translate = [0.5, 0.0, -2.5]\n";
+    let (count, kernels) = unforeseen(&glass, &[ball.clone(), ball.clone()]);
+    assert!(kernels.contains("shadow_meet"), "{kernels:?}");
+    assert_eq!(count, 0, "{glass}: pipelines made in the course of the work: {kernels:?}");
     for (text, ran, left) in [
         (volume(&format!("radius = 0.3, step = 0.1, {stops}")), "march", 0),
         (
