@@ -28,6 +28,7 @@ const EMBEDDED: &[(&str, &[u8])] = embedded![
     "bench/scans.toml",
     "bench/cells-per-pass.toml",
     "bench/landscape.toml",
+    "bench/light.toml",
     "bench/ruler.toml",
     "bench/smoke.toml",
     "bench/scenes/armadillo.toml",
@@ -35,13 +36,18 @@ const EMBEDDED: &[(&str, &[u8])] = embedded![
     "bench/scenes/bunny.toml",
     "bench/scenes/bunny-filled.toml",
     "bench/scenes/bunny-on-hills.toml",
+    "bench/scenes/bunny-under-sky.toml",
     "bench/scenes/cloud.toml",
     "bench/scenes/horse.toml",
     "bench/scenes/horse-filled.toml",
     "bench/scenes/room.toml",
     "bench/scenes/torus.toml",
+    "nested-glass.toml",
+    "smoke.toml",
     "images/sky.hdr",
+    "images/tiles.png",
     "points/floor.ply",
+    "points/slab.ply",
     "points/smoke.ply",
     "points/sphere.ply",
 ];
@@ -240,7 +246,9 @@ mod tests {
     #[test]
     fn known_suites_say_what_they_measure() {
         let suites = known();
-        for name in ["cells-per-pass", "landscape", "paper", "ruler", "scaling", "scans", "smoke"] {
+        for name in
+            ["cells-per-pass", "landscape", "light", "paper", "ruler", "scaling", "scans", "smoke"]
+        {
             let about = suites.iter().find(|suite| suite.0 == name).map(|suite| suite.1.as_str());
             assert!(about.is_some_and(|about| !about.is_empty()), "{name}: {suites:?}");
         }
@@ -248,7 +256,7 @@ mod tests {
         assert!(failure.lines[0].contains("did you mean 'paper'?"), "{failure:?}");
         assert!(
             failure.lines[0]
-                .contains("cells-per-pass, landscape, paper, ruler, scaling, scans, smoke"),
+                .contains("cells-per-pass, landscape, light, paper, ruler, scaling, scans, smoke"),
             "{failure:?}"
         );
     }
