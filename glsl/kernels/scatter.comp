@@ -142,7 +142,7 @@ void main() {
     uint to = next_offset_at(at / 32u) + uint(bitCount(marks.x & below)) + 2u * uint(bitCount(marks.y & below));
     bool goes_on = (marks.x >> bit & 1u) != 0u;
     uvec2 pixel = params.tile_origin + uvec2(path.pixel % params.tile_size.x, path.pixel / params.tile_size.x);
-    Drawn drawn = drawn_at(pixel, params.sample_index, params.seed, path.bounces);
+    Drawn drawn = drawn_at(pixel, params.sample_index, params.sample_bits, params.seed, path.bounces);
     if (scene_has(SCENE_DISPERSES)) {
         uint count = fate.splits ? 3u : 1u;
         for (uint i = 0u; i < count; ++i) {

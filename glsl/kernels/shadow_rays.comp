@@ -50,7 +50,10 @@ void main() {
         uvec2 pixel = params.tile_origin + uvec2(tile_at % params.tile_size.x, tile_at / params.tile_size.x);
         uint dimension = uint(SAMPLE_LIGHT) + params.light;
         if (lighting_has(LIGHTING_PATH)) dimension += uint(SAMPLES_A_BOUNCE) * path_of(ray).bounces;
-        vec2 drawn = sample_2d(pixel, params.sample_index, params.seed, dimension);
+        SharedSample own = SharedSample(pixel, params.sample_index);
+        bool shares = lighting_has(LIGHTING_SKY) || lighting_has(LIGHTING_PATH);
+        if (shares) own = shared_sample(pixel, params.sample_index, params.sample_bits);
+        vec2 drawn = sample_2d(own.pixel, own.index, params.seed, dimension);
         place = params.sample_index == NONE ? place : drawn; // of the pixel's centre: the centre
     }
     LightSample light = sample_light(lights[params.light], hit.position, place);

@@ -54,7 +54,8 @@ void main() {
     uint index = params.sample_index == NONE ? 0u : params.sample_index;
     uint dimension = uint(SAMPLE_LIGHT) + params.light;
     if (lighting_has(LIGHTING_PATH)) dimension += uint(SAMPLES_A_BOUNCE) * path.bounces;
-    vec2 drawn = sample_2d(pixel, index, params.seed, dimension);
+    SharedSample own = shared_sample(pixel, index, params.sample_bits);
+    vec2 drawn = sample_2d(own.pixel, own.index, params.seed, dimension);
     Place met = Place(vec3(0.0), hit.normal, NONE);
     if (scene_has(SCENE_GLOSSY)) {
         met.d = unpacked_direction(hit.view);

@@ -69,12 +69,13 @@ struct Drawn {
     vec2 place;   // in the unit square: where scattered light goes
 };
 
-Drawn drawn_at(uvec2 pixel, uint sample_index, uint seed, uint bounce) {
+Drawn drawn_at(uvec2 pixel, uint sample_index, uint bits, uint seed, uint bounce) {
     uint index = sample_index == NONE ? 0u : sample_index;
     float chance = 0.0;
     if (scene_has(SCENE_CHANCE)) chance = sample_1d(pixel, index, seed, uint(SAMPLE_FRESNEL) + bounce);
     vec2 place = vec2(0.0);
-    if (lighting_has(LIGHTING_PATH)) place = sample_2d(pixel, index, seed, uint(SAMPLE_SCATTER) + bounce);
+    SharedSample own = shared_sample(pixel, index, bits);
+    if (lighting_has(LIGHTING_PATH)) place = sample_2d(own.pixel, own.index, seed, uint(SAMPLE_SCATTER) + bounce);
     return Drawn(chance, place);
 }
 

@@ -60,6 +60,31 @@ vec2 sample_2d(uvec2 pixel, uint sample_index, uint seed, uint dimension) {
                 unit_float(owen_scramble(sobol_second(index), mix_bits(key + 2u))));
 }
 
+#define BLOCK_BITS 7u // of a pixel's place in a block that shares a sequence
+
+// Which sample of which sequence a pixel's is where the pixels of a block share one: along a curve of quadrants within
+// quadrants, so that those of any quadrant are a run of it, and what one pixel lacks its neighbours have (Ahmed and Wonka,
+// Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error, 2020).
+struct SharedSample {
+    uvec2 pixel;
+    uint index;
+};
+
+// The bits of a number below 2^16, with a 0 above each.
+uint spread_bits(uint x) {
+    x = (x | (x << 8)) & 0x00ff00ffu;
+    x = (x | (x << 4)) & 0x0f0f0f0fu;
+    x = (x | (x << 2)) & 0x33333333u;
+    return (x | (x << 1)) & 0x55555555u;
+}
+
+// Of a pixel that has at most 2^bits samples.
+SharedSample shared_sample(uvec2 pixel, uint index, uint bits) {
+    uvec2 within = pixel & ((1u << BLOCK_BITS) - 1u);
+    uint along = spread_bits(within.x) | (spread_bits(within.y) << 1);
+    return SharedSample(pixel >> BLOCK_BITS, (along << bits) | index);
+}
+
 // The unit disc from the unit square, areas kept, (1/2, 1/2) to the very centre (Shirley and Chiu, A
 // Low Distortion Map Between Disk and Square, 1997).
 vec2 concentric_disc(vec2 u) {

@@ -75,7 +75,8 @@ struct WaveParams { // 96 bytes
     uint sample_index;               //  72 Which sample of each pixel; NONE where there is only one, and lights have no extent.
     uint transparent;                //  76 What leaves the background out: one of TRANSPARENT_*, or 0 for nothing.
     float clamp;                     //  80 The most radiance of what has come over several surfaces.
-    uint pad[3];                     //  84 Unused.
+    uint sample_bits;                //  84 The samples of a pixel are at most 2 to this power.
+    uvec2 pad;                       //  88 Unused.
 };
 
 // Push constants of camera_trace.

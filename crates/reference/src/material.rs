@@ -10,7 +10,7 @@ mod mirror;
 
 use crate::media::{Crossing, Media, Way};
 use crate::real::{Real, V3};
-use crate::sampler::sample_2d;
+use crate::sampler::{sample_2d, shared_sample};
 use kernels::layout::{
     FIRST_CHANCE, MATERIAL_CLOUD, MATERIAL_DIFFUSE, MATERIAL_GLASS, MATERIAL_MATTE,
     MATERIAL_MIRROR, MOST_CROSSINGS, NONE, ObjectInfo, SAMPLE_FRESNEL, SAMPLE_SCATTER, WaveParams,
@@ -89,7 +89,8 @@ impl<R: Real> Drawn<R> {
         let sample = if params.sample_index == NONE { 0 } else { params.sample_index };
         let chance =
             || crate::sampler::sample_1d(pixel, sample, params.seed, SAMPLE_FRESNEL + bounce);
-        let place = sample_2d(pixel, sample, params.seed, SAMPLE_SCATTER + bounce);
+        let (block, index) = shared_sample(pixel, sample, params.sample_bits);
+        let place = sample_2d(block, index, params.seed, SAMPLE_SCATTER + bounce);
         Self { chance: (params.fresnel != 0).then(chance), place }
     }
 }

@@ -64,6 +64,26 @@ pub fn sample_2d<R: Real>(pixel: [u32; 2], sample_index: u32, seed: u32, dimensi
     ]
 }
 
+/// Of a pixel's place in a block that shares a sequence.
+const BLOCK_BITS: u32 = 7;
+
+/// The bits of a number below 2¹⁶, with a 0 above each.
+fn spread_bits(x: u32) -> u32 {
+    let x = (x | (x << 8)) & 0x00ff_00ff;
+    let x = (x | (x << 4)) & 0x0f0f_0f0f;
+    let x = (x | (x << 2)) & 0x3333_3333;
+    (x | (x << 1)) & 0x5555_5555
+}
+
+/// Which sequence, in place of a pixel, and which of its samples the sample of a pixel is, of at most 2^`bits`, where the
+/// pixels of a block share one: along a curve of quadrants within quadrants, so that what one pixel lacks its
+/// neighbours have (Ahmed and Wonka 2020).
+#[must_use]
+pub fn shared_sample(pixel: [u32; 2], index: u32, bits: u32) -> ([u32; 2], u32) {
+    let [x, y] = pixel.map(|at| spread_bits(at & ((1 << BLOCK_BITS) - 1)));
+    (pixel.map(|at| at >> BLOCK_BITS), ((x | (y << 1)) << bits) | index)
+}
+
 /// The unit disc from the unit square, areas kept, (½, ½) to the very centre (Shirley and Chiu 1997).
 #[must_use]
 pub fn concentric_disc<R: Real>(u: [R; 2]) -> [R; 2] {
@@ -93,6 +113,31 @@ mod tests {
                 direction ^= direction >> 1;
             }
             assert_eq!(sobol_second(index), sum, "{index}");
+        }
+    }
+
+    /// The samples of each quadrant of a block, of 2, 4, … pixels a side, are a (0, 2)-net: one in each of the intervals.
+    #[test]
+    fn neighbours_share_a_net() {
+        for side in [1, 2, 4] {
+            let (k, bits) = (2 * u32::ilog2(side) + 2, 2);
+            let mut samples: Vec<[f64; 2]> = Vec::new();
+            for at in 0..side * side {
+                let pixel = [384 + 4 * side + at % side, 128 + 8 * side + at / side];
+                samples.extend((0..4).map(|i| {
+                    let (block, index) = shared_sample(pixel, i, bits);
+                    sample_2d::<f64>(block, index, 7, 4097)
+                }));
+            }
+            for columns in (0..=k).map(|a| 1u32 << a) {
+                let rows = (1u32 << k) / columns;
+                let mut seen = vec![false; 1 << k];
+                for [x, y] in &samples {
+                    let cell =
+                        (x * f64::from(columns)) as u32 * rows + (y * f64::from(rows)) as u32;
+                    assert!(!std::mem::replace(&mut seen[cell as usize], true), "{side}");
+                }
+            }
         }
     }
 

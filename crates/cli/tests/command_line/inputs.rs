@@ -116,16 +116,8 @@ fn a_scene_names_no_output() {
     folder.write("ball.ply", &sphere(100));
     folder.write("s.toml", "[[objects]]\nname = '../../evil.png'\npoints = 'ball.ply'\n");
     let schema = run_in(folder.path(), &["schema"]).succeeds().stdout;
-    for word in [
-        "\"output\"",
-        "\"write\"",
-        "\"save\"",
-        "\"file\"",
-        "\"path\"",
-        "\"include\"",
-        "\"command\"",
-    ] {
-        assert!(!schema.contains(word), "a key {word}");
+    for word in ["output", "write", "save", "file", "path", "include", "command"] {
+        assert!(!schema.contains(&format!("\"{word}\":")), "a key {word}");
     }
     std::fs::create_dir(folder.path().join("out")).expect("a folder");
     std::fs::create_dir(folder.path().join("tmp")).expect("a folder");

@@ -160,8 +160,10 @@ stage! {
             transparent: u32,
             /// The most radiance of what has come over several surfaces.
             clamp: f32,
+            /// The samples of a pixel are at most 2 to this power.
+            sample_bits: u32,
             /// Unused.
-            pad: [u32; 3],
+            pad: [u32; 2],
         }
         /// Push constants of `camera_trace`.
         CameraTraceParams {

@@ -6,7 +6,7 @@ use crate::light::sample_light;
 use crate::material::{Place, lobe};
 use crate::path::Path;
 use crate::real::{Real, V3};
-use crate::sampler::sample_2d;
+use crate::sampler::{sample_2d, shared_sample};
 use crate::surface_hit::Hit;
 use kernels::layout::{NONE, SAMPLE_LIGHT, SAMPLES_A_BOUNCE};
 
@@ -23,7 +23,12 @@ impl<R: Real> PixelTrace<'_, R> {
         let u = match self.params.sample_index {
             NONE => [R::of(0.5); 2], // of the light: its centre, unless it is sampled
             sample => {
-                sample_2d(self.pixel, sample, self.params.seed, self.dimension_of_light(i, path))
+                let shares = self.plan.sky_lights() || self.plan.follows_paths();
+                let (pixel, index) = match shares {
+                    true => shared_sample(self.pixel, sample, self.params.sample_bits),
+                    false => (self.pixel, sample),
+                };
+                sample_2d(pixel, index, self.params.seed, self.dimension_of_light(i, path))
             }
         };
         let sample = sample_light(&self.plan.lights[i as usize], hit.position, u);

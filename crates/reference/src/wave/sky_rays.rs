@@ -6,7 +6,7 @@ use crate::environment::background_at;
 use crate::material::{Place, lobe, lobe_density, lobe_direction};
 use crate::path::Path;
 use crate::real::{NO_HIT, Real, V3};
-use crate::sampler::sample_2d;
+use crate::sampler::{sample_2d, shared_sample};
 use crate::sky::DrawnDirection;
 use crate::surface_hit::Hit;
 use kernels::layout::{LIGHT_ENVIRONMENT, NONE};
@@ -22,8 +22,8 @@ impl<R: Real> PixelTrace<'_, R> {
     ) -> Option<(Ray<R>, V3<R>)> {
         let zero = R::of(0.0);
         let index = if self.params.sample_index == NONE { 0 } else { self.params.sample_index };
-        let drawn =
-            sample_2d(self.pixel, index, self.params.seed, self.dimension_of_light(i, path));
+        let (block, index) = shared_sample(self.pixel, index, self.params.sample_bits);
+        let drawn = sample_2d(block, index, self.params.seed, self.dimension_of_light(i, path));
         let by_table = self.plan.lights[i as usize].kind == LIGHT_ENVIRONMENT;
         let DrawnDirection { towards, density } = if by_table {
             self.sky().draw(drawn)
