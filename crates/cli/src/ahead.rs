@@ -56,7 +56,8 @@ impl Ahead {
         let carries_surface = |object: &&Object| {
             object.volume.as_ref().is_none_or(|volume| volume.boundary != Boundary::None)
         };
-        let objects = scene.objects.iter().filter(carries_surface);
+        let objects = scene.objects.iter().filter(|object| !object.is_ground());
+        let objects = objects.filter(carries_surface);
         let fitted = |object: &Object| match object.surface.kind {
             SurfaceKind::Points => Some(object.surface.neighbors.count()),
             // Unless the file has normals.

@@ -1,18 +1,17 @@
 //! What may be typed. Values are checked for their form here, for their range by the scene.
 
 mod parse;
+mod render;
+
+pub use render::{Channels, Exposure, RenderArgs};
 
 use crate::errors::Failure;
-use crate::point_file::ColorBy;
 use crate::source;
 use clap::builder::{ArgPredicate, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use film::{FileFormat, Tone, ToneCurve};
 use parse::{
-    channels_parser, parse_crop, parse_flip, parse_limit, parse_percent, parse_reach,
-    parse_samples, parse_size, parse_stops, parse_threads, view_parser,
+    parse_flip, parse_limit, parse_percent, parse_reach, parse_size, parse_threads, view_parser,
 };
-use plan::{Diagnostic, Extra};
 use scene::ViewFrom;
 use std::path::{Path, PathBuf};
 
@@ -61,72 +60,6 @@ pub enum Command {
     Devices,
     /// Say how far two pictures are apart, and whether that is too far
     Compare(CompareArgs),
-}
-
-#[derive(Debug, Args)]
-pub struct RenderArgs {
-    /// Scene file (.toml), a picture (.exr) whose header has the scene that it was made from, or a point file; then
-    /// camera, light and material are chosen; - is what comes through stdin
-    #[arg(
-        value_name = "SCENE",
-        required = false,
-        required_unless_present = "as_scene",
-        default_value_if("as_scene", ArgPredicate::IsPresent, source::PIPE)
-    )]
-    pub scene: PathBuf,
-    #[command(flatten)]
-    pub source: SourceArgs,
-    /// Picture to write: .exr, .png or .jpg; - writes it to stdout, as --format says; may be given several times
-    #[arg(short, long = "output", value_name = "OUT", required = true)]
-    pub outputs: Vec<PathBuf>,
-    /// What `-o -` writes to stdout
-    #[arg(long, value_name = "FORMAT", value_enum)]
-    pub format: Option<PictureFormat>,
-    #[command(flatten)]
-    pub overrides: Overrides,
-    /// Rays a pixel
-    #[arg(long, value_name = "N", value_parser = parse_samples, allow_hyphen_values = true)]
-    pub samples: Option<u32>,
-    /// Render only a part of the picture: column and row of its upper left pixel, from 0, then its width and height in
-    /// pixels. (Points in a box are chosen by --set objects.0.filter.box)
-    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop, allow_hyphen_values = true)]
-    pub crop: Option<plan::Window>,
-    /// Brighten PNG and JPEG files by so many stops, each a factor of two; EXR files hold the numbers
-    /// as they are
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_stops)]
-    pub exposure: f64,
-    /// Curve from radiance to PNG and JPEG files, after the exposure
-    #[arg(long, value_name = "CURVE", value_enum, default_value_t = Curve::Linear)]
-    pub tone: Curve,
-    /// Channels to add to EXR files, with commas between; may be given several times
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = channels_parser())]
-    pub channels: Vec<Channels>,
-    /// Write R, G, B, A and N of EXR files in 16 bits instead of 32; all other channels stay
-    #[arg(long)]
-    pub half: bool,
-    /// Take warnings for errors: exit with 2, before rendering where they are known by then
-    #[arg(long)]
-    pub strict: bool,
-    #[command(flatten)]
-    pub view: ViewArgs,
-    /// What the columns of a point file are, from the first on, with commas between: x,y,z,_,red,green,blue;
-    /// _ passes a column over
-    #[arg(long, value_name = "LIST", value_parser = points::Columns::in_order)]
-    pub columns: Option<points::Columns>,
-    /// What colours the points of a point file: points (their own), height, intensity, or an attribute by
-    /// its name [default: their own; else, where they fill a volume, the first scalar; else intensity]
-    #[arg(long, value_name = "WHAT", value_parser = ColorBy::parse)]
-    pub color: Option<ColorBy>,
-    #[command(flatten)]
-    pub device: DeviceArgs,
-    /// Write what the colours mean as a picture of its own: the colour map of each object that has one, with its range
-    #[arg(long, value_name = "FILE.png")]
-    pub legend: Option<PathBuf>,
-    /// Write times and counts of this render as JSON
-    #[arg(long, value_name = "FILE.json")]
-    pub stats: Option<PathBuf>,
-    #[command(flatten)]
-    pub progress: ProgressArgs,
 }
 
 #[derive(Debug, Args)]
@@ -303,14 +236,6 @@ impl SourceArgs {
     }
 }
 
-/// What a picture on stdout is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum PictureFormat {
-    Exr,
-    Png,
-    Jpg,
-}
-
 #[derive(Debug, Args)]
 pub struct CheckArgs {
     /// Scene file, a picture (.exr) with the scene that it was made from, or a point file; - is what comes through stdin
@@ -410,25 +335,6 @@ pub enum ProgressWhen {
     Never,
 }
 
-/// What one name of `--channels` adds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Channels {
-    /// One channel, of what the render did.
-    Diagnostic(Diagnostic),
-    /// One or several, of what is seen.
-    Extra(Extra),
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Curve {
-    /// Cut at white
-    Linear,
-    /// c / (1 + c) in each channel
-    Reinhard,
-    /// A film-like curve: deeper darks, a soft shoulder
-    Aces,
-}
-
 impl BenchArgs {
     /// What is to be timed.
     pub fn asked(&self) -> Vec<PathBuf> {
@@ -440,33 +346,6 @@ impl CompareArgs {
     /// The largest mean FLIP, where `--flip` gives one.
     pub fn flip_limit(&self) -> Option<f64> {
         self.flip.flatten()
-    }
-}
-
-impl RenderArgs {
-    /// What an output is written as: by its extension, or by `--format` where it is stdout.
-    pub fn format_of(&self, output: &Path) -> Result<FileFormat, Failure> {
-        if output != Path::new(source::PIPE) {
-            return Ok(FileFormat::from_path(output)?);
-        }
-        match self.format {
-            Some(PictureFormat::Exr) => Ok(FileFormat::Exr),
-            Some(PictureFormat::Png) => Ok(FileFormat::Png),
-            Some(PictureFormat::Jpg) => Ok(FileFormat::Jpeg),
-            None => Err(Failure::usage(
-                "-: stdout has no extension that says what picture is meant; add --format exr, png or jpg",
-            )),
-        }
-    }
-
-    /// How 8-bit files are made.
-    pub fn tone(&self) -> Tone {
-        let curve = match self.tone {
-            Curve::Linear => ToneCurve::Linear,
-            Curve::Reinhard => ToneCurve::Reinhard,
-            Curve::Aces => ToneCurve::Aces,
-        };
-        Tone { exposure: self.exposure, curve }
     }
 }
 

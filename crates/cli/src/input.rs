@@ -116,13 +116,18 @@ impl Input {
                 None => Scene::load_below(path, &set, root),
             }
         } else {
-            Scene::for_point_file(path, turned, &set)
+            Scene::for_point_file(path, turned, values.quality, &set)
         };
         let mut scene = loaded.map_err(|error| values.name_options(error.into()))?;
         options.apply(&mut scene, path, is_scene_file(path))?;
         let point_file = (!is_scene_file(path)).then(|| {
             leave_out_folder(&mut scene, path);
-            PointFile { values: set, up_is_open: options.up.is_none(), color: None }
+            PointFile {
+                values: set,
+                quality: values.quality,
+                up_is_open: options.up.is_none(),
+                color: None,
+            }
         });
         Ok(Self { path: path.into(), scene, up: turned, options, point_file })
     }
@@ -140,6 +145,20 @@ impl Input {
             }
         }
         Ok(self)
+    }
+
+    /// Whether it is a point file, rendered directly.
+    pub fn is_point_file(&self) -> bool {
+        self.point_file.is_some()
+    }
+
+    /// The exposure of 8-bit files that the header of a picture says, in stops.
+    pub fn exposure_of_header(&self) -> Result<Option<f64>, Failure> {
+        if !is_exr(&self.path) {
+            return Ok(None);
+        }
+        let text = film::exr_text(&self.path, "pointillist/exposure")?;
+        Ok(text.and_then(|text| text.parse().ok()).filter(|stops: &f64| stops.is_finite()))
     }
 
     /// Which way is up in these points, and why, if anything says so.
@@ -180,7 +199,8 @@ impl Input {
         if let (Some(point_file), Some(view)) = (open, plan::sensor_view(&self.scene, sets)) {
             self.note_sensor(&view, progress);
             let values = &point_file.values;
-            let lights = Scene::for_sensor(&self.path, view.axes, values)?.lights;
+            let quality = point_file.quality;
+            let lights = Scene::for_sensor(&self.path, view.axes, quality, values)?.lights;
             let camera = view.camera.into();
             let scene = Scene { lights, key_light: None, camera, ..self.scene.clone() };
             return Ok((Cow::Owned(scene), self.up));
@@ -198,7 +218,8 @@ impl Input {
             let [axis, others] = [up.name().to_owned(), others.join(" or ")];
             progress.note(&format!("{file}: {axis} is up, {why}; {others} says otherwise"));
         }
-        let lights = Scene::for_point_file(&self.path, turned, &point_file.values)?.lights;
+        let PointFile { values, quality, .. } = point_file;
+        let lights = Scene::for_point_file(&self.path, turned, *quality, values)?.lights;
         Ok((Cow::Owned(Scene { lights, ..self.scene.clone() }), turned))
     }
 
@@ -215,7 +236,8 @@ impl Input {
 
     /// Every file that the picture is made from.
     pub fn files(&self) -> Vec<&Path> {
-        let points = self.scene.objects.iter().map(|object| object.points.as_path());
+        let points = self.scene.objects.iter().filter(|object| !object.is_ground());
+        let points = points.map(|object| object.points.as_path());
         let images = self.images().map(|image| image.path.as_path());
         std::iter::once(self.path.as_path()).chain(points).chain(images).collect()
     }
@@ -324,7 +346,9 @@ impl Input {
 
 /// A header must not tell in which folder of which machine a picture was made.
 fn leave_out_folder(scene: &mut Scene, path: &Path) {
-    if let [object] = scene.objects.as_mut_slice() {
+    let mut objects: Vec<&mut Object> =
+        scene.objects.iter_mut().filter(|object| !object.is_ground()).collect();
+    if let [object] = objects.as_mut_slice() {
         object.points_as_written =
             path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     }

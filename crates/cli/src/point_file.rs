@@ -9,7 +9,7 @@ use crate::errors::Failure;
 use crate::progress::Progress;
 use points::{Dimension, PointSet, ReadOptions, Sign, Wanted, Watch};
 use scalars::{first_scalar, part_of};
-use scene::{Albedo, Object, Scene, SurfaceKind, Up};
+use scene::{Albedo, Object, Quality, Scene, SurfaceKind, Up};
 use serde_json::json;
 use std::fs;
 use std::path::Path;
@@ -66,6 +66,8 @@ impl ColorBy {
 pub struct PointFile {
     /// `PATH=VALUE`, as typed.
     pub values: Vec<String>,
+    /// What scene it means.
+    pub quality: Quality,
     /// Whether its points decide which way is up.
     pub up_is_open: bool,
     /// `--color`.
@@ -101,7 +103,9 @@ impl PointFile {
         read_all: impl Fn() -> Result<PointSet, Failure>,
         progress: &Progress,
     ) -> Result<Vec<String>, Failure> {
-        let [object] = scene.objects.as_slice() else { return Ok(Vec::new()) };
+        let objects: Vec<&Object> =
+            scene.objects.iter().filter(|object| !object.is_ground()).collect();
+        let [object] = objects[..] else { return Ok(Vec::new()) };
         let file = object.points.display();
         let mut chosen = Vec::new();
         let dimension = self.dimension(object, set, progress);
@@ -335,7 +339,7 @@ mod tests {
 
     fn of(values: &[&str]) -> PointFile {
         let values = values.iter().map(|value| (*value).to_owned()).collect();
-        PointFile { values, up_is_open: true, color: None }
+        PointFile { values, quality: Quality::Draft, up_is_open: true, color: None }
     }
 
     #[test]

@@ -27,7 +27,11 @@ pub fn of(plan: &Plan, input: &Input, sets: &[Arc<PointSet>], engine: &Engine) -
         add("scene.sha256".to_owned(), hash);
     }
     let mut hashes: Vec<String> = Vec::new();
-    for (index, set) in sets.iter().enumerate() {
+    for (index, (object, set)) in input.scene.objects.iter().zip(sets).enumerate() {
+        if object.is_ground() {
+            hashes.push(String::new());
+            continue;
+        }
         // A file that several objects use is hashed once.
         let known = sets[..index].iter().position(|earlier| Arc::ptr_eq(earlier, set));
         let hash = known.map_or_else(|| points_hash(set), |earlier| hashes[earlier].clone());
@@ -35,7 +39,9 @@ pub fn of(plan: &Plan, input: &Input, sets: &[Arc<PointSet>], engine: &Engine) -
         add(format!("points.{index}.sha256"), hash.clone());
         hashes.push(hash);
     }
-    if let Some(hash) = image_hash(plan, plan.wave.background.environment) {
+    // An image that is made of a sky or a gradient says nothing that the scene does not.
+    let environment = input.scene.background.environment.is_some();
+    if let (true, Some(hash)) = (environment, image_hash(plan, plan.wave.background.environment)) {
         add("environment.sha256".to_owned(), hash);
     }
     for (index, object) in plan.objects.iter().enumerate() {

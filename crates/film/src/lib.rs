@@ -9,6 +9,7 @@
 mod canvas;
 mod eight_bit;
 mod error;
+mod exposure;
 mod exr_header;
 mod exr_read;
 mod exr_write;
@@ -23,6 +24,7 @@ mod tone;
 
 pub use canvas::{Canvas, Color, Pen};
 pub use error::FilmError;
+pub use exposure::mid_grey_exposure;
 pub use exr_header::{ExrAttribute, ExrHeader, read_exr_headers};
 pub use exr_read::{
     ExrFile, ExrPart, ExrPicture, Samples, exr_pixel_bytes, exr_text, read_exr, read_exr_file,

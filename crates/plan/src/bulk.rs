@@ -1,5 +1,6 @@
 //! What a scene is framed, centred and measured by: its points without strays ([`points::Strays`]).
 
+use crate::ground::{Standing, below};
 use crate::shapes::scatter_kind;
 use crate::{PlanError, isolated};
 use points::{
@@ -36,12 +37,13 @@ pub(crate) struct Bulk {
 }
 
 impl Bulk {
-    /// `files` are the sets as read, in the coordinates of their files. Fails where `drop_isolated` meets points that
+    /// `files` are the sets as read, in the coordinates of their files; grounds have none, and get theirs here, across
+    /// the axis nearest to `up`. Fails where `drop_isolated` meets points that
     /// f32 cannot bear, or the watcher asks for an end.
     pub(crate) fn of(
         scene: &Scene,
         sets: &[Arc<PointSet>],
-        files: &[Arc<PointSet>],
+        (files, up): (&[Arc<PointSet>], [f64; 3]),
         watch: &dyn Watch,
     ) -> Result<Self, PlanError> {
         watch.stage("looking for strays", sets.iter().map(|set| set.len() as u64).sum());
@@ -70,14 +72,47 @@ impl Bulk {
         };
         for (index, (object, strays)) in scene.objects.iter().zip(found).enumerate() {
             bulk.add(object, strays, (&sets[index], &world[index], &files[index]));
-            bulk.drop_isolated(object, watch)?;
+            match object.is_ground() {
+                true => bulk.isolated.push(0),
+                false => bulk.drop_isolated(object, watch)?,
+            }
         }
         bulk.bounds =
             bounds_of(bulk.world.iter().map(|world| &world[..])).ok_or(CloudError::Empty)?;
+        bulk.add_grounds(scene, up);
         if origin_of(bulk.bounds) != origin {
             bulk.orders.fill(None);
         }
         Ok(bulk)
+    }
+
+    /// The points of grounds, below those of all other objects. They do not count for the bounds.
+    fn add_grounds(&mut self, scene: &Scene, up: [f64; 3]) {
+        for (index, ground) in scene.objects.iter().enumerate().filter(|(_, one)| one.is_ground()) {
+            let standing = (scene.objects.iter().enumerate())
+                .filter(|(_, object)| !object.is_ground())
+                .map(|(other, object)| {
+                    let is_surface = object.surface.kind == SurfaceKind::Points;
+                    let (set, world) = match is_surface {
+                        true => (&self.sets[other], &self.world[other]),
+                        false => (&self.particles[other].0, &self.particles[other].1),
+                    };
+                    Standing { object, set, world }
+                });
+            let standing: Vec<Standing<'_>> = standing.collect();
+            let up = ground.ground_up().unwrap_or_else(|| Object::nearest_axis(up));
+            let set = Arc::new(below(&standing, up));
+            let world: World = Arc::new(placed(ground, &set));
+            self.point_count += set.len() as u64;
+            self.particles[index] = (Arc::clone(&set), Arc::clone(&world));
+            (self.sets[index], self.world[index], self.orders[index]) = (set, world, None);
+        }
+    }
+
+    /// Positions in the world of the objects that are no ground.
+    pub(crate) fn without_grounds(&self, scene: &Scene) -> Vec<World> {
+        let all = scene.objects.iter().zip(&self.world);
+        all.filter(|(object, _)| !object.is_ground()).map(|(_, world)| Arc::clone(world)).collect()
     }
 
     fn add(

@@ -37,7 +37,8 @@ pub struct SensorView {
 /// middle of the angles that they take up, as for scanners, which have no ahead. The picture is just large enough for all points.
 #[must_use]
 pub fn sensor_view(scene: &Scene, sets: &[Arc<PointSet>]) -> Option<SensorView> {
-    let ([object], [set]) = (scene.objects.as_slice(), sets) else { return None };
+    let mut standing = scene.objects.iter().zip(sets).filter(|(object, _)| !object.is_ground());
+    let (Some((object, set)), None) = (standing.next(), standing.next()) else { return None };
     let keys = &scene.camera;
     if keys.eye.is_some() || keys.view.is_some() || keys.is_orthographic {
         return None;

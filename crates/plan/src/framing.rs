@@ -135,7 +135,7 @@ fn along(parts: [f64; 3], axes: [DVec3; 3]) -> DVec3 {
 }
 
 /// The direction that is up, of unit length where it is not given.
-fn upwards(keys: &CameraKeys, up: Up) -> DVec3 {
+pub(crate) fn upwards(keys: &CameraKeys, up: Up) -> DVec3 {
     keys.up.map_or_else(
         || match up {
             Up::Y => DVec3::Y,

@@ -24,6 +24,7 @@ mod filter;
 mod first_view;
 mod frame;
 mod framing;
+mod ground;
 mod header_camera;
 mod images;
 mod inside;
@@ -232,7 +233,8 @@ impl Plan {
         let (metric, projection) = degrees::projected(scene, sets, watch)?;
         let image_size = scene.image.size;
         let window = checked_crop(crop, image_size)?;
-        let mut bulk = Bulk::of(scene, &metric, sets, watch)?;
+        let upwards = framing::upwards(&scene.camera, up).into();
+        let mut bulk = Bulk::of(scene, &metric, (sets, upwards), watch)?;
         let mut surface_sets: Vec<Arc<PointSet>> = (0..scene.objects.len())
             .map(|index| {
                 volumes::surface_points(&scene.objects[index], bulk.drawn(scene, index), watch)
@@ -273,7 +275,8 @@ impl Plan {
         let camera = match scene.camera.whole() {
             Some(camera) => camera,
             None => {
-                let (sets, bounds) = &shapes::with_extents(&shapes, &cloud, &bulk.world);
+                let subject = bulk.without_grounds(scene);
+                let (sets, bounds) = &shapes::with_extents((scene, &shapes), &cloud, &subject);
                 framing::complete(
                     &scene.camera,
                     &framing::Subject { sets, bounds: *bounds, image_size, up },
@@ -332,8 +335,13 @@ impl Plan {
             true => inside::media_of_lamps(scene, &known, &lights, (camera.eye, &camera_media)),
             false => vec![None; lights.len()],
         };
-        let framed =
-            Scene { camera: camera.into(), lights: scene_lights, key_light: None, ..scene.clone() };
+        let framed = Scene {
+            camera: camera.into(),
+            lights: scene_lights,
+            key_light: None,
+            objects: scene.objects.iter().map(|object| object.with_ground_up(upwards)).collect(),
+            ..scene.clone()
+        };
         Ok(Self {
             fits,
             shapes,

@@ -45,9 +45,9 @@ pub fn scatter_kind(object: &Object) -> Option<ShapeKind> {
 }
 
 /// The points that a picture is framed by, and their box: those of the objects, and the extents of shapes that are large
-/// beside the scene.
+/// beside the scene. Grounds are none of these.
 pub(crate) fn with_extents(
-    shapes: &[Shapes],
+    (scene, shapes): (&Scene, &[Shapes]),
     cloud: &Cloud,
     world: &[World],
 ) -> (Vec<World>, [[f64; 3]; 2]) {
@@ -56,6 +56,7 @@ pub(crate) fn with_extents(
     let large = LARGE * half.iter().map(|side| side * side).sum::<f64>().sqrt();
     let all = shapes
         .iter()
+        .filter(|shapes| !scene.objects[shapes.object as usize].is_ground())
         .flat_map(|shapes| cloud.points[shapes.slots().range()].iter().zip(&shapes.radii));
     let reaching: Vec<_> = all.filter(|(_, radius)| f64::from(**radius) > large).collect();
     let mut framed = world.to_vec();

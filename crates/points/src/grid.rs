@@ -52,6 +52,8 @@ const VALLEY: [f64; 2] = [2.0, 8.0];
 /// Part of a grid's length that must be empty for two to be made of it, and in how many parts it is looked for.
 const GAP: f64 = 0.1;
 const GAP_BINS: usize = 256;
+/// Giants are fewer than one in so many balls.
+const FEW_GIANTS: usize = 64;
 /// Parts of the cells and offsets of all grids begin at multiples of this many, so that they can be bound.
 const FIRST_CELL: u32 = 64;
 
@@ -204,12 +206,34 @@ pub fn plan_grids(
     if resolution > 0 {
         return Grids::single(plan_grid(&balls, 0.0, resolution, Share { of_all: 1.0, budget }));
     }
+    let slots = || {
+        let all = (0..).zip(outcomes).filter(|(_, outcome)| carries(outcome));
+        all.map(|(slot, _)| slot).collect()
+    };
+    if let Some(radius) = radius_of_giants(&balls) {
+        let all = Group { slots: slots(), balls };
+        let [rest, giants] = all.parted(&|ball| f64::from(ball.1) <= radius);
+        return Grids::new(split(vec![rest, giants], budget));
+    }
     let (grid, is_fine) = plan_fine(&balls, &mut radii, Share { of_all: 1.0, budget });
     if is_fine {
         return Grids::single(grid);
     }
-    let slots = (0..).zip(outcomes).filter(|(_, outcome)| carries(outcome)).map(|(slot, _)| slot);
-    Grids::new(split(Group { balls, slots: slots.collect() }, budget))
+    Grids::new(split(vec![Group { slots: slots(), balls }], budget))
+}
+
+/// The radius over which balls are giants, where there are some, and few: they reach past all centres, such as the ground
+/// below a scene. A grid around them has everything else in a few cells, and they say nothing about the size of cells.
+fn radius_of_giants(balls: &[Ball]) -> Option<f64> {
+    let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    let [low, high] = balls.iter().fold(none, |[low, high], (center, _)| {
+        let at = center.map(f64::from);
+        let of = |a: [f64; 3], f: fn(f64, f64) -> f64| [0, 1, 2].map(|i| f(a[i], at[i]));
+        [of(low, f64::min), of(high, f64::max)]
+    });
+    let diagonal = (0..3).map(|i| (high[i] - low[i]).powi(2)).sum::<f64>().sqrt();
+    let giants = balls.iter().filter(|ball| f64::from(ball.1) > diagonal).count();
+    (giants > 0 && giants * FEW_GIANTS <= balls.len()).then_some(diagonal)
 }
 
 /// What a grid may take of all that all may.
@@ -241,9 +265,9 @@ impl Group {
 }
 
 /// Parts balls by size, then by place, until no grid is too coarse, or none can be parted, or there are many.
-fn split(all: Group, budget: f64) -> Vec<(GridInfo, Vec<u32>)> {
-    let count = all.balls.len() as f64;
-    let (mut done, mut groups) = (Vec::new(), VecDeque::from([all]));
+fn split(all: Vec<Group>, budget: f64) -> Vec<(GridInfo, Vec<u32>)> {
+    let count = all.iter().map(|group| group.balls.len()).sum::<usize>() as f64;
+    let (mut done, mut groups) = (Vec::new(), VecDeque::from(all));
     while let Some(group) = groups.pop_front() {
         let mut radii: Vec<f32> = group.balls.iter().map(|ball| ball.1).collect();
         let share = Share { of_all: radii.len() as f64 / count, budget };

@@ -13,6 +13,7 @@ mod color_map;
 mod document;
 mod error;
 mod filter;
+mod ground;
 mod image;
 mod inside;
 mod keys;
@@ -23,6 +24,7 @@ mod models;
 mod not_built;
 mod object;
 mod overrides;
+mod point_file;
 mod preset;
 mod read;
 mod render_settings;
@@ -53,6 +55,7 @@ pub use light::Light;
 pub use material::{Albedo, Material, MaterialKind, TextureAxis};
 pub use models::MODELS_VARIABLE;
 pub use object::{Object, PointColumn, PointColumns, Units};
+pub use point_file::Quality;
 pub use render_settings::{
     Fresnel, GridResolution, Integrator, Primary, RayLoop, RenderSettings, Secondary, Shadows,
 };

@@ -1,7 +1,7 @@
 //! From text to a checked scene.
 use crate::background::BACKGROUND;
 use crate::camera_keys::CAMERA;
-use crate::document::{Node, Origin, SyntaxError, parse_file, parse_value};
+use crate::document::{Node, Origin, SyntaxError, parse_file};
 use crate::error::{Problem, Source};
 use crate::image::IMAGE;
 use crate::keys::SCENE;
@@ -12,8 +12,7 @@ use crate::read::Reader;
 use crate::render_settings::RENDER;
 use crate::root;
 use crate::{
-    Albedo, Background, CameraKeys, ImageSettings, Light, Object, RenderSettings, Scene,
-    SceneError, Up,
+    Albedo, Background, CameraKeys, ImageSettings, Light, Object, RenderSettings, Scene, SceneError,
 };
 use std::env;
 use std::fs::{self, File};
@@ -103,51 +102,6 @@ impl Scene {
             (_, missing) => Err(SceneError::problems(missing, &source)),
         }
     }
-
-    /// The scene that a point file rendered directly means: one object with defaults, no camera
-    /// (the renderer frames it), a key light, a dimmer one in the camera's eye, a grey background. `overrides`
-    /// apply as in [`Scene::load`], with paths relative to the working directory.
-    pub fn for_point_file(
-        points: &Path,
-        up: Up,
-        overrides: &[String],
-    ) -> Result<Scene, SceneError> {
-        Self::around(points, light_over(up), overrides)
-    }
-
-    /// The same for a camera in the place of a sensor, whose right, up and ahead are these unit vectors. The key
-    /// light comes from a little above and beside it, so that few of its shadows are seen. In a room, light from high
-    /// above would end at the ceiling.
-    ///
-    /// # Errors
-    /// As [`Scene::for_point_file`].
-    pub fn for_sensor(
-        points: &Path,
-        [right, up, ahead]: [[f64; 3]; 3],
-        overrides: &[String],
-    ) -> Result<Scene, SceneError> {
-        let key = [0, 1, 2].map(|i| -0.2 * right[i] - 0.25 * up[i] + ahead[i]);
-        Self::around(points, key, overrides)
-    }
-
-    fn around(points: &Path, key: [f64; 3], overrides: &[String]) -> Result<Scene, SceneError> {
-        let source = Source { file: points, text: "", overrides };
-        let mut document = point_file_document(points, key);
-        let (mut scene, missing) = checked(&mut document, Path::new(""), None, &source)?;
-        models::find(&mut scene, models_folder().as_deref());
-        let key_light = document.get("lights").and_then(|list| list.items().first());
-        let direction = key_light.and_then(|light| light.get("direction"));
-        scene.key_light = direction.filter(|node| node.origin == Origin::Given).map(|_| 0);
-        let written = document.get("objects").and_then(|list| list.items().first()?.get("points"));
-        // The document holds text; the path itself may hold bytes that are not UTF-8.
-        if let (Some(Origin::Given), [object, ..]) =
-            (written.map(|node| node.origin), scene.objects.as_mut_slice())
-        {
-            object.points = points.to_path_buf();
-        }
-        files_exist(&document, &scene, &source, (None, false), missing)?;
-        Ok(scene)
-    }
 }
 
 /// The text of a scene file.
@@ -196,7 +150,7 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 }
 
 /// Overrides, then checks, then the scene, with which of the files of transfer functions are missing.
-fn checked(
+pub(crate) fn checked(
     document: &mut Node,
     folder: &Path,
     root: Option<&Path>,
@@ -206,6 +160,7 @@ fn checked(
     for (index, text) in source.overrides.iter().enumerate() {
         problems.extend(crate::overrides::apply(document, index, text).err());
     }
+    crate::ground::apply(document);
     crate::preset::apply(document);
     // What is wrong in a file of its own comes first: the scene is right if that is.
     let missing = crate::transfer_file::insert(document, folder, root)?;
@@ -216,6 +171,7 @@ fn checked(
     }
     let scene = scene(&Reader::new(&SCENE, Some(document)), folder);
     let problem = crate::inside::problem(document, &scene)
+        .or_else(|| crate::ground::problem(document, &scene))
         .or_else(|| crate::background::problem(document, &scene));
     match problem {
         Some(problem) => Err(SceneError::problems(vec![problem], source)),
@@ -224,12 +180,12 @@ fn checked(
 }
 
 /// The folder that the environment names for models.
-fn models_folder() -> Option<PathBuf> {
+pub(crate) fn models_folder() -> Option<PathBuf> {
     env::var_os(MODELS_VARIABLE).filter(|folder| !folder.is_empty()).map(PathBuf::from)
 }
 
 /// Every file that the scene names is there: point files and images, beside those that are known to be missing.
-fn files_exist(
+pub(crate) fn files_exist(
     document: &Node,
     scene: &Scene,
     source: &Source<'_>,
@@ -267,7 +223,9 @@ fn files_exist(
     for (index, (object, node)) in scene.objects.iter().zip(nodes).enumerate() {
         let origin = node.get("points").map_or(node.origin, |points| points.origin);
         let (path, key) = (&object.points, format!("objects[{index}].points"));
-        require(path, &object.points_as_written, "a point file", origin, key);
+        if !object.is_ground() {
+            require(path, &object.points_as_written, "a point file", origin, key);
+        }
         if let Albedo::Texture { file, .. } = &object.material.albedo {
             let origin = node
                 .get("material")
@@ -307,30 +265,6 @@ pub(crate) fn what_is_missing(
             Some(format!("'{path}' cannot be read ({error}); check the file and its permissions"))
         }
     }
-}
-
-/// Direction of the key light over points whose up is this.
-fn light_over(up: Up) -> [f64; 3] {
-    // Turned from y up by a quarter turn about x, (x, y, z) to (x, -z, y), or by half a turn, to
-    // (x, -y, -z).
-    match up {
-        Up::Y => [-0.5, -1.0, -0.6],
-        Up::Z => [-0.5, 0.6, -1.0],
-        Up::MinusY => [-0.5, 1.0, 0.6],
-    }
-}
-
-/// As TOML, so that overrides and checks work on it as on any scene. With the direction of the key light: the dimmer
-/// one is in the eye, where no shadow of its own is seen, so that none is black.
-fn point_file_document(points: &Path, key: [f64; 3]) -> Node {
-    let text = format!(
-        "{{ background = {{ color = [0.18, 0.18, 0.18] }}, lights = [\
-         {{ kind = \"directional\", direction = {key:?}, irradiance = [2.5, 2.5, 2.5] }},\
-         {{ kind = \"headlight\", at_target = [0.6, 0.6, 0.6] }}\
-         ], objects = [{{ points = {} }}] }}",
-        crate::settings::quoted(&points.to_string_lossy())
-    );
-    parse_value(&text, Origin::Given).unwrap_or_else(|| unreachable!("not TOML: {text}"))
 }
 
 fn scene(file: &Reader<'_>, folder: &Path) -> Scene {

@@ -25,7 +25,9 @@ pub(crate) fn find(scene: &mut Scene, models: Option<&Path>) {
     };
     let locate_image = |image: &mut ImageFile| locate(&mut image.path, &image.as_written);
     for object in &mut scene.objects {
-        locate(&mut object.points, &object.points_as_written);
+        if !object.is_ground() {
+            locate(&mut object.points, &object.points_as_written);
+        }
         if let Albedo::Texture { file, .. } = &mut object.material.albedo {
             locate_image(file);
         }

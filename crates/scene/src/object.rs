@@ -84,7 +84,7 @@ pub(crate) static OBJECTS: Table = Table {
             "points",
             Kind::Text("the path of a point file"),
             Required("\"points/knot.ply\""),
-            "The point file, relative to the scene file's folder.",
+            "The point file, relative to the scene file's folder. `\"@ground\"`: no file but a ground, see A ground.",
         ),
         key(
             "units",

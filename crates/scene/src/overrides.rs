@@ -44,6 +44,10 @@ fn put(
     };
     let Node { value: inside, shown, .. } = node;
     match inside {
+        Value::List(items) if *part == "+" && rest.is_empty() => {
+            items.push(value);
+            Ok(())
+        }
         Value::List(items) => {
             let count = items.len();
             let item = part.parse::<usize>().ok().and_then(|index| items.get_mut(index));

@@ -34,7 +34,9 @@ pub(crate) fn find(scene: &mut Scene, root: Option<&Path>) {
         }
     };
     for object in &mut scene.objects {
-        locate(&mut object.points, &object.points_as_written);
+        if !object.is_ground() {
+            locate(&mut object.points, &object.points_as_written);
+        }
         if let Albedo::Texture { file, .. } = &mut object.material.albedo {
             locate(&mut file.path, &file.as_written);
         }

@@ -1,6 +1,6 @@
 //! What is typed for an argument, as a value, or what was expected instead.
 
-use super::{Channels, Size};
+use super::{Channels, Exposure, Size};
 use crate::input::BOX_HINT;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use plan::{Diagnostic, Extra};
@@ -47,10 +47,13 @@ pub(super) fn parse_threads(text: &str) -> Result<usize, String> {
     }
 }
 
-pub(super) fn parse_stops(text: &str) -> Result<f64, String> {
+pub(super) fn parse_exposure(text: &str) -> Result<Exposure, String> {
+    if text.trim() == "auto" {
+        return Ok(Exposure::Auto);
+    }
     match text.parse() {
-        Ok(stops) if (-100.0..=100.0).contains(&stops) => Ok(stops),
-        _ => Err("expected a number from -100 to 100, e.g. 1.5".to_owned()),
+        Ok(stops) if (-100.0..=100.0).contains(&stops) => Ok(Exposure::Stops(stops)),
+        _ => Err("expected auto, or a number from -100 to 100, e.g. 1.5".to_owned()),
     }
 }
 
@@ -156,9 +159,10 @@ mod tests {
         for wrong in ["", "-1", "nan", "inf", "1e999", "0,5"] {
             assert!(parse_limit(wrong).is_err(), "{wrong}");
         }
-        assert_eq!(parse_stops("-1.5"), Ok(-1.5));
+        assert_eq!(parse_exposure("-1.5"), Ok(Exposure::Stops(-1.5)));
+        assert_eq!(parse_exposure("auto"), Ok(Exposure::Auto));
         for wrong in ["", "bright", "nan", "inf", "101"] {
-            assert!(parse_stops(wrong).is_err(), "{wrong}");
+            assert!(parse_exposure(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -74,7 +74,8 @@ impl Cases {
 
     fn add_scene(&mut self, path: PathBuf, overrides: &Overrides) -> Result<(), Failure> {
         for beside in each_preset(overrides) {
-            let values = SceneValues::new(&of_preset(overrides, beside));
+            // As measured ever since.
+            let values = SceneValues::new(&of_preset(overrides, beside)).in_draft();
             let input = Input::load(&path, &values, &ViewArgs::default())?;
             let name = named(input.name(), overrides, beside);
             let (suite, made, over, paper_ms) = (None, None, None, None);
@@ -97,7 +98,7 @@ impl Cases {
                 each_preset(&args.overrides).into_iter().map(move |it| (cells, it))
             }) {
                 let mut name = row.name.clone();
-                let mut values = SceneValues::set(&row.set);
+                let mut values = SceneValues::set(&row.set).in_draft();
                 if let Some(count) = count {
                     name += &format!(", {count} points");
                 }

@@ -1,7 +1,7 @@
 //! `render`: from a scene or a point file to pictures.
 
 use crate::ahead::Ahead;
-use crate::args::{Channels, RenderArgs};
+use crate::args::{Channels, Exposure, RenderArgs};
 use crate::engine::{Built, Engine, Frame, with_engine};
 use crate::errors::Failure;
 use crate::input::{Input, SceneValues, check_preset};
@@ -42,6 +42,12 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
     check_preset(args.overrides.preset.as_deref(), &args.overrides.set)?;
     let mut values = SceneValues::new(&args.overrides);
+    if let Some(quality) = args.quality {
+        values = values.in_quality(&args.scene, quality.into());
+    }
+    if args.ground {
+        values = values.on_ground();
+    }
     if let Some(samples) = args.samples {
         values.add("image.samples", &samples.to_string(), &format!("--samples {samples}"));
     }
@@ -61,7 +67,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
              -o FILE.exr",
         );
     }
-    if args.tone() != Tone::default() && formats.iter().all(|format| *format == FileFormat::Exr) {
+    if args.asks_for_tone() && formats.iter().all(|format| *format == FileFormat::Exr) {
         progress.warn(
             "--exposure and --tone are ignored, since EXR files hold the numbers as they are; \
              add -o FILE.png",
@@ -70,7 +76,8 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     if args.half && !formats.contains(&FileFormat::Exr) {
         progress.warn("--half is ignored, since it is for EXR files; add -o FILE.exr");
     }
-    let objects = input.scene.objects.iter().map(|object| object.points.as_path());
+    let objects = input.scene.objects.iter().filter(|object| !object.is_ground());
+    let objects = objects.map(|object| object.points.as_path());
     let beside = memory::of_point_files(objects).saturating_add(picture);
     with_engine(&args.device, beside, &progress, |engine| {
         render(args, &mut input, added, engine, &progress)
@@ -132,7 +139,8 @@ fn render(
         progress.warn(line);
     }
     progress.refuse_warnings(args.strict, ", and nothing was rendered")?;
-    let provenance = exr.then(|| provenance::of(&plan, input, &sets, engine));
+    let of_header = input.exposure_of_header()?;
+    let mut provenance = exr.then(|| provenance::of(&plan, input, &sets, engine));
     drop(sets);
     let planned = started.elapsed() - read;
     let plan = Arc::new(plan);
@@ -143,7 +151,19 @@ fn render(
     // Of a part that was asked for, or where it is known why, nothing is no surprise.
     let in_eight_bits =
         args.outputs.iter().any(|path| args.format_of(path).ok() != Some(FileFormat::Exr));
-    let shown = plan::Shown::of(&plan, in_eight_bits.then(|| args.tone()));
+    let exposure = match (args.exposure, of_header) {
+        (Some(Exposure::Stops(stops)), _) | (None, Some(stops)) => stops,
+        (None, None) if !input.is_point_file() => 0.0,
+        (Some(Exposure::Auto) | None, _) => {
+            let is_beside = |object: usize| input.scene.objects[object].is_ground();
+            film::mid_grey_exposure(&frame.film, &is_beside).unwrap_or(0.0)
+        }
+    };
+    if let (Some(provenance), true) = (&mut provenance, exposure != 0.0) {
+        provenance.settings.push(("exposure".to_owned(), exposure.to_string()));
+    }
+    let tone = args.tone(exposure);
+    let shown = plan::Shown::of(&plan, in_eight_bits.then_some(tone));
     let blank =
         plan::blank(&frame.film, shown).filter(|_| nothing.is_empty() && args.crop.is_none());
     if let Some(line) = blank {
@@ -154,7 +174,7 @@ fn render(
     if exr && args.half {
         warn_of_bright_values(&frame.film, progress);
     }
-    write_pictures(args, provenance, &frame, progress)?;
+    write_pictures(args, provenance, (&frame, tone), progress)?;
     if let Some((path, legend)) = &legend {
         legend::write(legend, path)?;
     }
@@ -176,8 +196,8 @@ fn render(
     interrupt::finished();
     let times = [read, planned, built.duration];
     progress.result(
-        &summary(args, &plan, engine, &frame, times),
-        fields(args, &plan, engine, &frame, times),
+        &summary(args, &plan, engine, (&frame, exposure), times),
+        fields(args, &plan, engine, (&frame, exposure), times),
     );
     progress.refuse_warnings(args.strict, " of the picture, which was written")
 }
@@ -185,10 +205,10 @@ fn render(
 fn write_pictures(
     args: &RenderArgs,
     provenance: &Provenance,
-    frame: &Frame,
+    (frame, tone): (&Frame, Tone),
     progress: &Progress,
 ) -> Result<(), Failure> {
-    let style = Style { tone: args.tone(), half: args.half };
+    let style = Style { tone, half: args.half };
     progress.stage("writing pictures", args.outputs.len() as u64);
     for (output, written) in args.outputs.iter().zip(1..) {
         let film = &frame.film;
@@ -244,7 +264,7 @@ fn fields(
     args: &RenderArgs,
     plan: &Plan,
     engine: &Engine,
-    frame: &Frame,
+    (frame, exposure): (&Frame, f64),
     [read, planned, built]: [Duration; 3],
 ) -> Value {
     let outputs: Vec<String> =
@@ -261,6 +281,7 @@ fn fields(
         "points": plan.point_count,
         "size": plan.window.size,
         "passes": frame.passes,
+        "exposure": exposure,
         "seconds": seconds,
     })
 }
@@ -270,7 +291,7 @@ fn summary(
     args: &RenderArgs,
     plan: &Plan,
     engine: &Engine,
-    frame: &Frame,
+    (frame, exposure): (&Frame, f64),
     [read, planned, built]: [Duration; 3],
 ) -> String {
     let outputs: Vec<String> =
@@ -281,9 +302,13 @@ fn summary(
         1 => "1 pass".to_owned(),
         passes => format!("{passes} passes"),
     };
+    let exposed = match exposure {
+        0.0 => String::new(),
+        stops => format!(", exposed by {stops} stops"),
+    };
     format!(
         "{}: {points} points, {width}x{height} on {}: read {:.2} s, planned {:.2} s, \
-         built {:.2} s, traced {:.2} s in {passes} -> {}",
+         built {:.2} s, traced {:.2} s in {passes}{exposed} -> {}",
         args.scene.display(),
         engine.name(),
         read.as_secs_f64(),

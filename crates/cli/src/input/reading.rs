@@ -34,7 +34,8 @@ impl Input {
         let mut values = point_file.choose(&self.scene, first, up, read_all, progress)?;
         if !values.is_empty() {
             values.extend(point_file.values.iter().cloned());
-            self.scene = Scene::for_point_file(&self.path, self.up, &values)?;
+            let quality = point_file.quality;
+            self.scene = Scene::for_point_file(&self.path, self.up, quality, &values)?;
             self.options.apply(&mut self.scene, &self.path, false)?;
             leave_out_folder(&mut self.scene, &self.path);
         }
@@ -61,6 +62,11 @@ impl Input {
         let mut jobs: Vec<(PathBuf, &Path, ReadOptions)> = Vec::new();
         let mut job_of = Vec::new();
         for object in &self.scene.objects {
+            // Its points follow from those of the others, in the plan.
+            if object.is_ground() {
+                job_of.push(None);
+                continue;
+            }
             let (file, options) = (same_file(&object.points), options(object));
             let known = jobs.iter().position(|job| {
                 let known = (&job.2.filter, &job.2.columns);
@@ -71,13 +77,15 @@ impl Input {
             } else {
                 jobs.push((file, &object.points, options));
             }
-            job_of.push(known.unwrap_or(jobs.len() - 1));
+            job_of.push(Some(known.unwrap_or(jobs.len() - 1)));
         }
         let sets = jobs
             .iter()
             .map(|(_, path, options)| Ok(Arc::new(read_file(path, options, progress)?)))
             .collect::<Result<Vec<_>, Failure>>()?;
-        Ok(job_of.into_iter().map(|job| Arc::clone(&sets[job])).collect())
+        let set_of =
+            |job: Option<usize>| job.map_or_else(Arc::default, |job| Arc::clone(&sets[job]));
+        Ok(job_of.into_iter().map(set_of).collect())
     }
 }
 

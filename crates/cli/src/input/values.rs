@@ -4,6 +4,7 @@ use super::{columns_of_scene, is_scene_file};
 use crate::args::Overrides;
 use crate::errors::Failure;
 use points::{Column, Columns};
+use scene::Quality;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -14,12 +15,15 @@ pub struct SceneValues {
     pub(super) entries: Vec<(String, Option<String>)>,
     /// Where the files of a scene are looked for first.
     pub(super) root: Option<PathBuf>,
+    /// Of the scene that a point file means.
+    pub(super) quality: Quality,
 }
 
 impl SceneValues {
     /// Only `--set`.
     pub fn set(set: &[String]) -> Self {
-        Self { entries: set.iter().map(|entry| (entry.clone(), None)).collect(), root: None }
+        let entries = set.iter().map(|entry| (entry.clone(), None)).collect();
+        Self { entries, ..Self::default() }
     }
 
     /// With `--root`.
@@ -80,6 +84,34 @@ impl SceneValues {
         let all: Vec<String> = named.chain([left_out]).collect();
         self.add("objects.0.columns", &format!("{{ {} }}", all.join(", ")), "--columns");
         Ok(())
+    }
+
+    /// `--quality`: what scene a point file means, of others how many samples, beneath what the other values say.
+    pub fn in_quality(mut self, path: &Path, quality: Quality) -> Self {
+        self.quality = quality;
+        if is_scene_file(path) {
+            let name = match quality {
+                Quality::Draft => "draft",
+                Quality::Good => "good",
+                Quality::Best => "best",
+            };
+            let value = format!("image.samples={}", quality.samples());
+            self.entries.insert(0, (value, Some(format!("--quality {name}"))));
+        }
+        self
+    }
+
+    /// `--ground`, before all values, which may change it.
+    pub fn on_ground(mut self) -> Self {
+        let value = "objects.+={ points = \"@ground\" }".to_owned();
+        self.entries.insert(0, (value, Some("--ground".to_owned())));
+        self
+    }
+
+    /// The scene of point files that is lit by lights only, one ray a pixel.
+    pub fn in_draft(mut self) -> Self {
+        self.quality = Quality::Draft;
+        self
     }
 
     /// One option.

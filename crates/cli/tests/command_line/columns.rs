@@ -45,7 +45,8 @@ fn columns_are_said_on_the_command_line_and_in_scenes() {
     run(&["check", "s.toml"]).succeeds();
     let device = ["--device", "reference"];
     let of_file = ["render", "ball.txt", "--columns", COLUMNS, "--size", "32x24", "-o", "a.png"];
-    run(&[&of_file[..], &device].concat()).succeeds();
+    let as_scenes = ["--quality", "draft", "--exposure", "0"];
+    run(&[&of_file[..], &as_scenes, &device].concat()).succeeds();
     run(&[&["render", "s.toml", "-o", "b.png"], &device[..]].concat()).succeeds();
     let bytes = |name: &str| std::fs::read(folder.path().join(name)).expect("a picture");
     assert!(bytes("a.png") == bytes("b.png"), "the option and the table mean the same");

@@ -16,6 +16,7 @@ mod drivers;
 mod faults;
 mod fill;
 mod filters;
+mod first_picture;
 mod forecasts;
 mod headers;
 mod inputs;

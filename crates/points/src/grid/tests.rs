@@ -121,3 +121,24 @@ fn sizes_without_a_gap_are_parted_too() {
     assert!((3..=8).contains(&grids.levels.len()), "{:?}", grids.levels);
     assert!(grids.levels.windows(2).all(|pair| pair[0].grid.edge < pair[1].grid.edge));
 }
+
+/// A ground below a scene: it has a grid of its own, and the others have the one that they have without it.
+#[test]
+fn a_giant_changes_no_grid_but_its_own() {
+    let balls = |with: bool| {
+        let mut balls: Vec<([f32; 3], f32)> = (0..20_000u32)
+            .map(|i| {
+                let [u, v] = [i % 200, i / 200].map(|at| f64::from(at) / 200.0);
+                ([u as f32, (0.1 * (7.0 * u).sin()) as f32, v as f32], 0.01)
+            })
+            .collect();
+        balls.extend(with.then_some(([0.5, -0.2, 0.25], 9.0)));
+        plan_levels(&balls, 0)
+    };
+    let (without, with) = (balls(false), balls(true));
+    assert_eq!((without.levels.len(), with.levels.len()), (1, 2));
+    // But for the share of cells and pairs, which is of all.
+    let [fine, giant] = [with.levels[0].grid, with.levels[1].grid];
+    assert!((fine.edge / without.levels[0].grid.edge - 1.0).abs() < 0.01, "{fine:?}");
+    assert!(giant.edge > 100.0 * fine.edge, "{giant:?}");
+}

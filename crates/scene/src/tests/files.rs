@@ -49,11 +49,11 @@ fn what_is_no_scene_file_is_a_clear_error() {
 fn a_point_file_is_a_scene_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
     let points = folder.path().join("a \"b\" \\.ply");
-    let error = Scene::for_point_file(&points, Up::Y, &[]).unwrap_err().to_string();
+    let error = Scene::for_point_file(&points, Up::Y, Quality::Draft, &[]).unwrap_err().to_string();
     assert!(error.contains("found no file at"), "{error}");
     std::fs::write(&points, "").unwrap();
     let set = ["objects.0.surface.polynomial=\"incomplete\"".to_owned()];
-    let scene = Scene::for_point_file(&points, Up::Y, &set).unwrap();
+    let scene = Scene::for_point_file(&points, Up::Y, Quality::Draft, &set).unwrap();
     assert_eq!(
         (scene.camera, scene.lights.len(), scene.objects.len()),
         (CameraKeys::default(), 2, 1)
@@ -70,12 +70,44 @@ fn a_point_file_is_a_scene_of_its_own() {
         ("lights.0.direction=[1, 1, 1]", None),
         ("lights=[]", None),
     ] {
-        let scene = Scene::for_point_file(&points, Up::Y, &[set.to_owned()]).unwrap();
+        let scene =
+            Scene::for_point_file(&points, Up::Y, Quality::Draft, &[set.to_owned()]).unwrap();
         assert_eq!(scene.key_light, key_light, "{set}");
     }
     let set = ["image.sizes=3".to_owned()];
-    let error = Scene::for_point_file(&points, Up::Y, &set).unwrap_err().to_string();
+    let error =
+        Scene::for_point_file(&points, Up::Y, Quality::Draft, &set).unwrap_err().to_string();
     assert!(error.contains("--set image.sizes=3: image.sizes: unknown key"), "{error}");
+}
+
+/// What is set wins; direct light, or a preset made for it, takes the lights that leave nothing black.
+#[test]
+fn quality_says_how_a_point_file_is_lit() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = folder.path().join("a.ply");
+    std::fs::write(&points, "").unwrap();
+    let scene = |quality, set: &[&str]| {
+        let set: Vec<String> = set.iter().map(|text| (*text).to_owned()).collect();
+        let scene = Scene::for_point_file(&points, Up::Y, quality, &set).unwrap();
+        let text = scene.settings_toml();
+        let again = Scene::from_toml(&text, Path::new(""), &[]).unwrap();
+        assert_eq!((again.settings_toml(), &again.lights), (text, &scene.lights));
+        assert_eq!(scene.key_light, Some(0));
+        scene
+    };
+    let [draft, good, best] =
+        [Quality::Draft, Quality::Good, Quality::Best].map(|quality| scene(quality, &[]));
+    let integrators = [&draft, &good, &best].map(|scene| scene.render.integrator);
+    assert_eq!(integrators, [Integrator::Direct, Integrator::Sky, Integrator::Path]);
+    assert_eq!((draft.image.samples, best.image.samples), (1, 256));
+    assert!(good.image.samples > 1 && good.lights == best.lights);
+    assert!(matches!(good.lights[0], Light::Directional { angle, .. } if angle > 10.0));
+    assert_eq!((draft.lights.len(), &good.objects), (2, &draft.objects));
+    assert_eq!(scene(Quality::Good, &["image.samples=2"]).image.samples, 2);
+    assert_eq!(scene(Quality::Best, &["render.integrator=\"direct\""]), draft);
+    assert_eq!(scene(Quality::Good, &["render.preset=\"paper\""]).lights, draft.lights);
+    let sky = ["render.preset=\"paper\"", "render.integrator=\"sky\""];
+    assert_eq!(scene(Quality::Good, &sky).lights, good.lights);
 }
 
 /// The light falls from above: against y, or against z.
@@ -85,7 +117,7 @@ fn up_turns_the_light_of_a_point_file() {
     let points = folder.path().join("a.ply");
     std::fs::write(&points, "").unwrap();
     let direction = |up| {
-        let lights = Scene::for_point_file(&points, up, &[]).unwrap().lights;
+        let lights = Scene::for_point_file(&points, up, Quality::Draft, &[]).unwrap().lights;
         let [Light::Directional { direction, .. }, Light::Headlight { .. }] = lights[..] else {
             panic!("{lights:?}")
         };
@@ -105,7 +137,10 @@ fn a_point_files_name_need_not_be_utf8() {
     let folder = tempfile::tempdir().unwrap();
     let points = folder.path().join(std::ffi::OsStr::from_bytes(b"a\xff.ply"));
     std::fs::write(&points, "").unwrap();
-    assert_eq!(Scene::for_point_file(&points, Up::Y, &[]).unwrap().objects[0].points, points);
+    assert_eq!(
+        Scene::for_point_file(&points, Up::Y, Quality::Draft, &[]).unwrap().objects[0].points,
+        points
+    );
 }
 
 /// The background of a point file rendered directly is nobody's wish, so an environment replaces it.
@@ -117,11 +152,18 @@ fn a_point_file_takes_an_environment() {
     let sky = folder.path().join("sky.hdr");
     std::fs::write(&sky, "").unwrap();
     let set = format!("background.environment={}", sky.display());
-    let scene = Scene::for_point_file(&points, Up::Y, &[set]).unwrap();
+    let scene = Scene::for_point_file(&points, Up::Y, Quality::Good, &[set]).unwrap();
     assert_eq!(scene.background.environment.map(|image| image.path), Some(sky));
-    for made in ["background.sky={}", "background.gradient=[[0, 0, 0], [1, 1, 1]]"] {
-        let scene = Scene::for_point_file(&points, Up::Y, &[made.to_owned()]).unwrap();
-        assert!(scene.background.sky.is_some() || scene.background.gradient.is_some());
+    for made in [
+        "background.sky={}",
+        "background.gradient=[[0, 0, 0], [1, 1, 1]]",
+        "background.color=[0.5, 0.5, 0.5]",
+    ] {
+        let scene =
+            Scene::for_point_file(&points, Up::Y, Quality::Good, &[made.to_owned()]).unwrap();
+        let Background { color, sky, gradient, .. } = scene.background;
+        let is_typed = gradient == Some([[0.0; 3], [1.0; 3]]) || color == [0.5; 3];
+        assert!(is_typed || (sky.is_some() && gradient.is_none()), "{made}");
     }
 }
 
