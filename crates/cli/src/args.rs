@@ -45,7 +45,7 @@ pub enum LogFormat {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render a scene file, or a point file as it is
-    Render(RenderArgs),
+    Render(Box<RenderArgs>),
     /// Measure how long suites or scenes take to render, and what changed since
     Bench(BenchArgs),
     /// Say what is in a point file, a scene file, or a picture
