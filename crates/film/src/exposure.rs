@@ -11,6 +11,8 @@ const SPECKS: f64 = 1e-3;
 const COVERED: f32 = 0.5;
 /// Steps of a stop that an exposure is rounded to, so that it can be typed.
 const STEPS: f64 = 1000.0;
+/// Pixels that one thread takes at once: most pictures are done before another has begun.
+const PART: usize = 1 << 20;
 /// Largest exposure either way, in stops.
 const FARTHEST: f64 = 100.0;
 
@@ -28,7 +30,8 @@ pub fn mid_grey_exposure(film: &Film, is_beside: &(dyn Fn(usize) -> bool + Sync)
         let counts = alpha >= COVERED && !beside && luminance > 0.0 && luminance.is_finite();
         counts.then_some(luminance)
     };
-    let mut lit: Vec<f64> = film.color.par_iter().zip(&film.object).filter_map(luminance).collect();
+    let pixels = film.color.par_iter().zip(&film.object).with_min_len(PART);
+    let mut lit: Vec<f64> = pixels.filter_map(luminance).collect();
     let specks = (lit.len() as f64 * SPECKS) as usize;
     let count = lit.len().checked_sub(specks).filter(|count| *count > 0)?;
     if specks > 0 {
