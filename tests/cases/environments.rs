@@ -3,7 +3,8 @@
 
 use film::{Film, Image, Texels};
 use harness::analytic::{
-    Body, Matter, Shape, V3, add, cross, dot, environment_at, environment_of, follow, unit,
+    Body, Matter, Shape, V3, add, cross, dot, environment_at, environment_of, follow, looked_up,
+    turned_back, unit,
 };
 use harness::{Bench, assert_same_bits, fibonacci_sphere, plan_with, render_twin, set_of};
 use plan::{Plan, SceneImages};
@@ -15,27 +16,6 @@ const SIZE: [usize; 2] = [96, 72];
 const EYE: V3 = [0.7, -0.5, 2.2];
 const TARGET: V3 = [0.1, 0.2, -0.1];
 const FOV: f64 = 70.0;
-
-/// What docs/scene.md says is looked up for a direction.
-fn looked_up(up: V3, [x, y, z]: V3) -> V3 {
-    match up.map(|along| if along == 0.0 { 0 } else { along.signum() as i32 }) {
-        [0, -1, 0] => [x, -y, -z],
-        [0, 0, 1] => [x, z, -y],
-        [0, 0, -1] => [x, -z, y],
-        [1, 0, 0] => [-y, x, z],
-        [-1, 0, 0] => [y, -x, z],
-        _ => [x, y, z],
-    }
-}
-
-/// A direction turned back by Rz·Ry·Rx: about z, then y, then x, each the other way round.
-fn turned_back(rotate: V3, d: V3) -> V3 {
-    let [(sx, cx), (sy, cy), (sz, cz)] = rotate.map(|angle| angle.to_radians().sin_cos());
-    let [x, y, z] = d;
-    let [x, y, z] = [cz * x + sz * y, cz * y - sz * x, z];
-    let [x, y, z] = [cy * x - sy * z, y, cy * z + sy * x];
-    [x, cx * y + sx * z, cx * z - sx * y]
-}
 
 fn smooth() -> Arc<Image> {
     Arc::new(environment_of(512, |[x, y, z]| {

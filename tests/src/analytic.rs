@@ -294,6 +294,29 @@ pub fn environment_at(image: &Image, d: V3) -> V3 {
     mix(row(top), row(top + 1.0), y - top)
 }
 
+/// What docs/scene.md says is looked up for a direction.
+#[must_use]
+pub fn looked_up(up: V3, [x, y, z]: V3) -> V3 {
+    match up.map(|along| if along == 0.0 { 0 } else { along.signum() as i32 }) {
+        [0, -1, 0] => [x, -y, -z],
+        [0, 0, 1] => [x, z, -y],
+        [0, 0, -1] => [x, -z, y],
+        [1, 0, 0] => [-y, x, z],
+        [-1, 0, 0] => [y, -x, z],
+        _ => [x, y, z],
+    }
+}
+
+/// A direction turned back by Rz·Ry·Rx: about z, then y, then x, each the other way round.
+#[must_use]
+pub fn turned_back(rotate: V3, d: V3) -> V3 {
+    let [(sx, cx), (sy, cy), (sz, cz)] = rotate.map(|angle| angle.to_radians().sin_cos());
+    let [x, y, z] = d;
+    let [x, y, z] = [cz * x + sz * y, cz * y - sz * x, z];
+    let [x, y, z] = [cy * x - sy * z, y, cy * z + sy * x];
+    [x, cx * y + sx * z, cx * z - sx * y]
+}
+
 /// An environment image of a smooth function of the direction.
 #[must_use]
 pub fn environment_of(height: u32, radiance: impl Fn(V3) -> V3) -> Image {
