@@ -135,13 +135,13 @@ impl Real for f32 {
         p = p * z + 3.333_333_33e-1;
         2.0 * (t + t * (z * p))
     }
-    #[expect(clippy::excessive_precision, reason = "the kernel's digits")]
     fn depth_of_chance(self) -> Self {
         let bits = (1.0 - self).to_bits();
         let halvings = (126 - (bits >> 23) as i32) as Self;
         let m = Self::from_bits(bits & 0x7f_ffff | 0x3f00_0000);
         Real::max((1.0 - m).depth_of_absorptance() + halvings * std::f32::consts::LN_2, 0.0)
     }
+    #[expect(clippy::excessive_precision, reason = "the kernel's digits")]
     fn sin_octant(self) -> Self {
         let z = self * self;
         let mut p = -1.951_529_589_1e-4;

@@ -169,7 +169,7 @@ const GOOD_SAMPLES: u32 = 4;
 fn in_a_studio(Lights { key, fill }: Lights, integrator: &str, samples: u32) -> String {
     format!(
         "image = {{ samples = {samples} }}, render = {{ integrator = \"{integrator}\" }}, \
-         background = {{ gradient = [[0.25, 0.25, 0.25], [0.7, 0.7, 0.7]] }}, lights = [\
+         background = {{ gradient = [[0.22, 0.24, 0.27], [0.62, 0.70, 0.80]] }}, lights = [\
          {{ kind = \"directional\", direction = {key:?}, irradiance = [4.5, 4.5, 4.5], angle = 20.0 }},\
          {{ kind = \"headlight\", at_target = [{fill:?}, {fill:?}, {fill:?}] }}]"
     )
