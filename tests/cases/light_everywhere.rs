@@ -56,7 +56,6 @@ fn more_samples() -> u32 {
 /// Gives a plan so many samples and a seed, as its scene would.
 fn sample(plan: &mut Plan, samples: u32, seed: u32) {
     plan.samples = samples;
-    plan.wave.sample_bits = samples.next_power_of_two().ilog2();
     (plan.wave.seed, plan.camera.seed) = (seed, seed);
 }
 

@@ -378,7 +378,7 @@ impl Plan {
                 light_count: lights.len() as u32,
                 sample_index: NONE,
                 clamp: scene.render.clamp.map_or(f32::MAX, |clamp| clamp as f32),
-                sample_bits: scene.image.samples.next_power_of_two().ilog2(),
+                sample_bits: 0,
                 pad: [0; 2],
             },
             objects,

@@ -62,11 +62,15 @@ impl Plan {
     /// tile.
     #[must_use]
     pub fn wave_of(&self, tile: &Window, sample: u32) -> WaveParams {
+        let sample_index = self.sample_index(sample);
+        // The ray through a pixel's centre takes what the one sample of a pixel would.
+        let bits = if sample_index == NONE { 0 } else { self.samples.next_power_of_two().ilog2() };
         WaveParams {
             tile_origin: tile.origin,
             tile_size: tile.size,
             ray_count: camera_wave(tile),
-            sample_index: self.sample_index(sample),
+            sample_index,
+            sample_bits: bits,
             ..self.wave
         }
     }
