@@ -23,9 +23,9 @@ use std::sync::atomic::{AtomicI32, Ordering};
 const FEW: usize = 480;
 /// Renders with one device.
 const A_DEVICE: usize = 40;
-/// What may be more at the end than after the first half: allocators keep what they have split, for the first 300 renders 60 MB (3.5 MB from the
-/// 300th render to the 800th, nothing from there to the 1000th). A leak of two kilobytes a render is more than that
-/// after 10 000, and a leak of one small buffer or pipeline is after 240.
+/// What may be more at the end than after the first half: allocators keep what they have split, 60 MB in the first 300
+/// renders, 3 MB from there to the 640th. A leak of four kilobytes a render is more than that after 10 000, and a leak of one
+/// small buffer or pipeline is after 480.
 const SLACK_BYTES: usize = 16 << 20;
 
 const HEAD: &str = "size = [16, 12]\n[camera]\neye = [0, 0.4, 4]\ntarget = [0, 0, 0]\n\

@@ -62,7 +62,7 @@ pub(crate) fn dims(object: &ObjectInfo) -> bool {
     object.albedo != [1.0; 3] || absorbs(object)
 }
 
-/// Whether a lit surface scatters light by Lambert's law. Where that sends rays on, no kernel has to be told by a bit.
+/// Whether a lit surface scatters light by Lambert's law. Kernels need no bit to send rays on from one.
 fn is_plain(object: &ObjectInfo) -> bool {
     [MATERIAL_DIFFUSE, MATERIAL_MATTE].contains(&object.material)
 }

@@ -168,8 +168,9 @@ fn a_ground_is_an_object_of_a_scene_with_values_of_its_own() {
     let ran = run_in(folder.path(), &["check", "scene.toml"]).succeeds();
     assert!(ran.stdout.contains("2 objects"), "{}", ran.stdout);
     run_in(folder.path(), &["info", "scene.toml"]).succeeds();
-    folder.write("alone.toml", ground);
-    run_in(folder.path(), &["check", "alone.toml"]).fails_with(2, &["only @ground", "add one"]);
+    folder.write("only-ground.toml", ground);
+    run_in(folder.path(), &["check", "only-ground.toml"])
+        .fails_with(2, &["only @ground", "add one"]);
     folder.write("axis.toml", &format!("{object}[[objects]]\npoints = \"@ground:w\"\n"));
     run_in(folder.path(), &["check", "axis.toml"])
         .fails_with(2, &["axis.toml:4", "@ground:w", "-z"]);
