@@ -24,7 +24,7 @@ uvec3 cell_of_id(GridInfo grid, uint id) {
 // The cell that holds x, or the nearest one where x lies outside.
 uvec3 cell_of(GridInfo grid, vec3 x) {
     vec3 at = floor((x - grid.origin) * grid.inverse_edge);
-    return uvec3(clamp(at, vec3(0.0), vec3(grid.resolution) - 1.0));
+    return whole_of(clamp(at, vec3(0.0), vec3(grid.resolution) - 1.0));
 }
 
 bool in_box(GridInfo grid, vec3 x) {

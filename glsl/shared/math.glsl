@@ -6,6 +6,15 @@
 #ifndef MATH_GLSL
 #define MATH_GLSL
 
+#define BY_BITS 8388608.0 // 2^23: added to a whole number below that, it leaves the number in the lowest 23 bits
+
+// What uint(x) is for x from 0 to below 2^23.
+#define WHOLE_OF(Floats, Uints) \
+Uints whole_of(Floats x) { \
+    return floatBitsToUint(floor(x) + BY_BITS) & 0x7fffffu; \
+}
+WHOLE_OF(float, uint) WHOLE_OF(vec3, uvec3)
+
 #define NO_HIT 3.0e38 // farther than any hit; finite, so that no infinity enters a sum
 
 // The larger of two numbers, unless both are negative: then one of them. By their bits, which compare as integers do:
@@ -48,12 +57,25 @@ Floats exp_negative(Floats x) { \
     p = p * r + 1.6666665459e-1; \
     p = p * r + 5.0000001201e-1; \
     Floats e = (p * (r * r) + r) + 1.0; \
-    Floats scale = uintBitsToFloat(Uints(Ints(n) + 127) << 23); \
+    Floats scale = uintBitsToFloat(floatBitsToUint(n + (BY_BITS + 127.0)) << 23); \
     return mix(e * scale, Floats(0.0), below(x, Floats(-80.0))); \
 }
 #define IS_BELOW(a, b) ((a) < (b))
 EXP_NEGATIVE(float, int, uint, IS_BELOW)
 EXP_NEGATIVE(vec4, ivec4, uvec4, lessThan)
+
+// 2^x from -126 to 126. Error under 3e-7 of it: the polynomial of the fifth degree that is 1 at 0 and departs least, 1e-7, in
+// three parts that wait for each other less than one term for the next.
+float power_of_two(float x) {
+    float n = floor(x + 0.5);
+    float r = x - n;
+    float square = r * r;
+    float low = r * 6.93147004e-1 + 1.0;
+    float middle = r * 5.55073358e-2 + 2.40222424e-1;
+    float high = r * 1.3264725e-3 + 9.67151299e-3;
+    float p = low + square * (middle + square * high);
+    return p * uintBitsToFloat(floatBitsToUint(n + (BY_BITS + 127.0)) << 23);
+}
 
 // 1 - e^-x for x >= 0, what a way of the optical depth x takes from its light, with all digits however small x is.
 // Error under 3 ulp. e^r - 1 by the polynomial of exp_negative, to which the 1 is never added.
@@ -67,7 +89,7 @@ float absorptance(float x) {
     p = p * r + 1.6666665459e-1;
     p = p * r + 5.0000001201e-1;
     float less = p * (r * r) + r;
-    float scale = uintBitsToFloat(uint(int(n) + 127) << 23);
+    float scale = uintBitsToFloat(floatBitsToUint(n + (BY_BITS + 127.0)) << 23);
     return x > 80.0 ? 1.0 : (1.0 - scale) - scale * less;
 }
 

@@ -32,30 +32,23 @@ vec2 way_through(Ray ray, uint path, float end) {
     return way;
 }
 
-#ifdef LIT
-// What reaches the points, by their weights.
-vec4 visible_sum(vec4 sum, vec4 weights, FourPoints four) {
-    return (((sum + weights.x * visible_at(four.at[0])) + weights.y * visible_at(four.at[1]))
-        + weights.z * visible_at(four.at[2])) + weights.w * visible_at(four.at[3]);
-}
-#endif
-
 // An end of a step, and the step before it.
 struct Sample {
     vec3 x;
     float length_of_step;
     float begin; // of the step, along the ray
+    float whole; // where the whole step begins
     bool outside; // at the border of the volumes' boxes, where no point is in reach
 };
 
 Sample sample_of(Ray ray, vec2 way, float end, uint place, uint part, uint steps) {
-    float begin = float(max(place, 1u) - 1u) * params.step;
-    float length_of_step = place > 0u ? min(params.step, (way.y - way.x) - begin) : 0.0;
+    float whole = float(max(place, 1u) - 1u) * params.step, begin = whole;
+    float length_of_step = place > 0u ? min(params.step, (way.y - way.x) - whole) : 0.0;
     length_of_step *= part > 0u ? 1.0 / float(MARCH_PARTS) : 1.0;
     begin += part > 0u ? float(part - 1u) * length_of_step : 0.0;
     vec3 x = ray.origin + (way.x + (begin + length_of_step)) * ray.direction;
     bool outside = (place == 0u && way.x > 0.0) || (place == steps && part == 0u && way.y < end);
-    return Sample(x, length_of_step, way.x + begin, outside);
+    return Sample(x, length_of_step, way.x + begin, way.x + whole, outside);
 }
 
 #define LOOK_NOWHERE 0u // nothing is seen from the cell
@@ -68,5 +61,28 @@ uint look_at(VolumeInfo volume, Sample at) {
     bool inside = all(greaterThanEqual(cells_off, vec3(0.0))) && all(lessThan(cells_off, vec3(volume.grid.resolution)));
     bool seen = volume_cell_at(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, at.x))).counts != 0u;
     return !inside || at.outside ? LOOK_OUTSIDE : (seen ? LOOK_AROUND : LOOK_NOWHERE);
+}
+#define OPAQUE NO_HIT // the optical depth from 69 on
+#define DEEPEST 69.0775528 // optical depth through which nothing is seen, a transmittance of 1e-30
+
+// Whether one scalar stands for the whole way of a ray.
+bool is_whole(VolumeInfo volume) {
+    return volume.mode == VOLUME_MAXIMUM || volume.mode == VOLUME_AVERAGE || volume.mode == VOLUME_INTEGRAL;
+}
+
+// What a ray shows of the scalar that stands for its whole way: a layer of one radius, all of it, or once.
+March shown(VolumeInfo volume, March march) {
+    float way = march.color.y;
+    bool reached = way > 0.0;
+    bool mean = volume.mode == VOLUME_AVERAGE;
+    float scalar = reached ? march.color.x / (mean && reached ? way : 1.0) : 0.0;
+    float thickness = mean ? way : (volume.mode == VOLUME_INTEGRAL ? 1.0 : sqrt(volume.square_radius));
+    Shown seen = mean_of(volume, pivots_of(volume), scalar, scalar);
+    float depth = seen.scattering.w * thickness;
+    vec3 color = (thickness * mean_transmittance(depth)) * (seen.scattering.xyz + seen.emission);
+    march.depth = reached ? (depth > DEEPEST ? OPAQUE : depth) : 0.0;
+    march.color = reached ? color : vec3(0.0);
+    march.along = scalar;
+    return march;
 }
 #endif

@@ -39,15 +39,15 @@ vec2 within_box(vec3 low, vec3 high, vec3 o, vec3 d) {
 // out has no weight.
 uvec2 row_points(VolumeInfo volume, uvec3 low, uvec3 high, uint row, vec3 x, float reach) {
     uint height = high.y - low.y + 1u;
-    uint layer = uint((float(row) + 0.5) / float(height)); // row / height, which drivers divide a lane at a time
+    uint layer = whole_of((float(row) + 0.5) / float(height)); // row / height, which drivers divide a lane at a time
     uvec2 yz = low.yz + uvec2(row - layer * height, layer);
     vec3 at = (x - volume.grid.origin) * volume.grid.inverse_edge; // in cells, as all of these
     float radius = reach * volume.grid.inverse_edge;
     vec2 away = max(max(vec2(yz) - at.yz, at.yz - vec2(yz + 1u)) - ROW_MARGIN, vec2(0.0));
     float square = radius * radius - (away.x * away.x + away.y * away.y);
     float half_chord = sqrt(max(square, 0.0)) + ROW_MARGIN;
-    uint first_x = clamp(uint(max(at.x - half_chord, 0.0)), low.x, high.x);
-    uint last_x = clamp(uint(max(at.x + half_chord, 0.0)), first_x, high.x);
+    uint first_x = clamp(whole_of(min(max(at.x - half_chord, 0.0), 8388607.0)), low.x, high.x);
+    uint last_x = clamp(whole_of(min(max(at.x + half_chord, 0.0), 8388607.0)), first_x, high.x);
     uint row_first = volume.first_cell + cell_id(volume.grid, uvec3(0u, yz));
     uvec2 range = uvec2(volume_cell_at(row_first + first_x).first, volume_cell_at(row_first + last_x + 1u).first);
     return square >= 0.0 ? range : uvec2(0u);
@@ -97,11 +97,13 @@ vec3 add_up(vec3 sum, vec4 weights, FourPoints four) {
 }
 
 // Monaghan's cubic spline times pi h^3, at q = d / h: 1 - 3/2 q^2 + 3/4 q^3 below 1, (2 - q)^3 / 4 below 2.
-vec4 spline(vec4 q) {
-    vec4 far = max(2.0 - q, vec4(0.0));
-    vec4 near = max(1.0 - q, vec4(0.0));
-    return 0.25 * (far * far * far) - near * near * near;
+#define SPLINE(Floats) \
+Floats spline(Floats q) { \
+    Floats far = max(2.0 - q, Floats(0.0)); \
+    Floats near = max(1.0 - q, Floats(0.0)); \
+    return 0.25 * (far * far * far) - near * near * near; \
 }
+SPLINE(float) SPLINE(vec4)
 
 vec4 inverse_lengths_of(FourPoints four) {
     return vec4(inverse_length_at(four.at[0]), inverse_length_at(four.at[1]), inverse_length_at(four.at[2]),
@@ -136,9 +138,34 @@ struct Shown {
     vec3 emission;
 };
 
-// How many stops are at or below a scalar, of which so many are known to be.
-uint piece_of(VolumeInfo volume, float scalar, uint known) {
-    uint low = known, high = volume.stop_count;
+// Values of eight stops of a volume, evenly among all; after the last, what no scalar reaches. They are read where a volume is
+// the only one: rays that go from one to another and back at each step would read them each time.
+struct Pivots {
+    vec4 low;
+    vec4 high;
+    uint stride;
+};
+
+Pivots pivots_of(VolumeInfo volume) {
+    Pivots pivots = Pivots(vec4(NO_HIT), vec4(NO_HIT), 0u);
+    pivots.stride = scene_has(SCENE_MANY_VOLUMES) ? 0u : (volume.stop_count + 7u) / 8u;
+    if (scene_has(SCENE_MANY_VOLUMES)) return pivots;
+#define PIVOT(i, part, at) { \
+        uint stop = i * pivots.stride; \
+        pivots.part[at] = stop < volume.stop_count ? stop_value_at(volume.first_stop + stop) : NO_HIT; \
+    }
+    PIVOT(0u, low, 0) PIVOT(1u, low, 1) PIVOT(2u, low, 2) PIVOT(3u, low, 3)
+    PIVOT(4u, high, 0) PIVOT(5u, high, 1) PIVOT(6u, high, 2) PIVOT(7u, high, 3)
+    return pivots;
+}
+
+// How many stops are at or below a scalar.
+uint piece_of(VolumeInfo volume, Pivots pivots, float scalar) {
+    uvec4 below = uvec4(lessThanEqual(pivots.low, vec4(scalar))) + uvec4(lessThanEqual(pivots.high, vec4(scalar)));
+    uint count = (below.x + below.y) + (below.z + below.w);
+    bool any = !scene_has(SCENE_MANY_VOLUMES);
+    uint high = any ? min(count * pivots.stride, volume.stop_count) : volume.stop_count;
+    uint low = any && count > 0u ? (count - 1u) * pivots.stride + 1u : 0u;
     while (low < high) {
         uint middle = (low + high) / 2u;
         bool above = stop_value_at(volume.first_stop + middle) > scalar;
@@ -149,26 +176,26 @@ uint piece_of(VolumeInfo volume, float scalar, uint known) {
 }
 
 // How many stops at or below a scalar bound a steep piece.
-float steep_stops(VolumeInfo volume, float scalar) {
-    uint piece = piece_of(volume, scalar, 0u);
+float steep_stops(VolumeInfo volume, Pivots pivots, float scalar) {
+    uint piece = piece_of(volume, pivots, scalar);
     float count = integral_to(volume.first_stop + max(piece, 1u) - 1u, 4u).w;
     return piece > 0u ? count : 0.0;
 }
 
 // Whether a step between two scalars that ends at x is divided: the scalar may pass a steep piece within it.
-bool is_divided(VolumeInfo volume, float a, float b, vec3 x) {
+bool is_divided(VolumeInfo volume, Pivots pivots, float a, float b, vec3 x) {
     uint cell = volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x));
     float margin = uintBitsToFloat(volume_cell_at(cell).counts & ~uint(CELL_KINDS));
-    return steep_stops(volume, min(a, b) - margin) < steep_stops(volume, max(a, b) + margin);
+    return steep_stops(volume, pivots, min(a, b) - margin) < steep_stops(volume, pivots, max(a, b) + margin);
 }
 
-// The mean from one scalar to another, neither of them beyond the stops of a piece. Colour and extinction are linear
+// The mean from one scalar to another, neither of them beyond the stops of a piece, the higher of which has that value. Colour and extinction are linear
 // there, and so is emission; constant beyond the outer stops.
-Shown mean_within(VolumeInfo volume, uint piece, float a, float b) {
+Shown mean_within(VolumeInfo volume, uint piece, float value_high, float a, float b) {
     uint low = volume.first_stop + max(piece, 1u) - 1u;
     uint high = volume.first_stop + min(piece, volume.stop_count - 1u);
     float value_low = stop_value_at(low);
-    float span = stop_value_at(high) - value_low;
+    float span = value_high - value_low;
     float divisor = span > 0.0 ? span : 1.0;
     float from = span > 0.0 ? min(max((a - value_low) / divisor, 0.0), 1.0) : 0.0;
     float to = span > 0.0 ? min(max((b - value_low) / divisor, 0.0), 1.0) : 0.0;
@@ -190,21 +217,21 @@ Shown mean_within(VolumeInfo volume, uint piece, float a, float b) {
 
 // The mean of the transfer function over all scalars from one to another: pre-integration (Engel et al. 2001), exact
 // between stops. What lies between the outer two pieces comes from integrals that the plan made, in two floats each.
-Shown mean_of(VolumeInfo volume, float a, float b) {
+Shown mean_of(VolumeInfo volume, Pivots pivots, float a, float b) {
     float low = min(a, b), high = max(a, b);
-    uint piece = piece_of(volume, low, 0u);
+    uint piece = piece_of(volume, pivots, low);
     uint first = volume.first_stop + min(piece, volume.stop_count - 1u); // the first stop above the lower scalar
     float stop = stop_value_at(first);
     bool several = piece < volume.stop_count && stop <= high;
     float end = several ? stop : high;
-    Shown mean = mean_within(volume, piece, low, end);
+    Shown mean = mean_within(volume, piece, stop, low, end);
     uint others = several ? 1u : 0u;
     while (others > 0u) {
         --others;
-        uint upper_piece = piece_of(volume, high, piece + 1u);
+        uint upper_piece = piece_of(volume, pivots, high);
         uint last = volume.first_stop + upper_piece - 1u; // the last stop not above the higher one
         float begin = stop_value_at(last);
-        Shown upper = mean_within(volume, upper_piece, begin, high);
+        Shown upper = mean_within(volume, upper_piece, stop_value_at(volume.first_stop + min(upper_piece, volume.stop_count - 1u)), begin, high);
         float lower_part = end - low, upper_part = high - begin, inverse = 1.0 / (high - low);
         vec4 scattering = (integral_to(last, 2u) - integral_to(first, 2u)) + (integral_to(last, 3u) - integral_to(first, 3u));
         vec4 emission = (integral_to(last, 4u) - integral_to(first, 4u)) + (integral_to(last, 5u) - integral_to(first, 5u));

@@ -29,7 +29,7 @@ struct AccumulateParams { // 16 bytes
     uint samples;                    //  12 In all.
 };
 
-#define FILM 92 // By pixel of the tile
+#define FILM 93 // By pixel of the tile
 
-#define FILM_SUMS 93 // Of all samples so far
+#define FILM_SUMS 94 // Of all samples so far
 #endif

@@ -23,9 +23,10 @@
 #define CELL_BELOW 3 // VolumeCell.counts: where there is one, it is below
 #define CELL_KINDS 3 // VolumeCell.counts: the bits of these
 #define MARCH_PARTS 64 // Parts of a step that is divided
+#define BLOCK_PLACES 8 // Places along a ray for which points are measured together, at most
 
 // A field between points ([T] §6).
-struct VolumeInfo { // 96 bytes
+struct VolumeInfo { // 112 bytes
     GridInfo grid;                   //   0 Over the points' bounding box grown by the radius, and up to a cell more.
     uint first_cell;                 //  32 In the cells of all volumes.
     uint first_stop;                 //  36 In the stops of all volumes.
@@ -41,6 +42,8 @@ struct VolumeInfo { // 96 bytes
     uint slot;                       //  84 Of the polynomial that stands for an isosurface, behind those of all points; of other modes, 1 where anything has an emission.
     uint refracts;                   //  88 1: an isosurface of glass, which rays are inside or outside; of a volume that scatters rays, the slot of the polynomial that stands for it.
     uint shading;                    //  92 What light does in it: one of VOLUME_EMITS and so on.
+    uint block;                      //  96 Places of a block, a power of two: so many that no weight is out of the range of floats.
+    uint pad[3];                     // 100 Unused.
 };
 
 // A cell of a volume's grid.
@@ -101,14 +104,23 @@ struct March { // 80 bytes
     float depth_lost;                //  28 What rounding added to the depth.
     vec3 step_color;                 //  32 What this step sends per length, of the volumes so far.
     float step_extinction;           //  44 Of this step.
-    float numerator;                 //  48 Numerator of this volume's scalar at this place, so far.
+    float numerator;                 //  48 Where volumes are lit, numerator of this volume's scalar at this place, so far.
     float denominator;               //  52 Its denominator.
     uint state;                      //  56 0: not begun, 1: on its way, 2: done, 3: once more, for along.
     uint place;                      //  60 End of a step; from bit 24 on, its part, where 0 is the whole step; in bit 31, whether a volume so far divides it.
     uint volume;                     //  64 Volume.
-    uint row;                        //  68 Of cells around the place.
+    uint row;                        //  68 Of cells around the places that are asked for.
     uint cursor;                     //  72 Points of the row that are done.
     float along;                     //  76 For the channels of volumes: the depth along the viewing axis where half of what is lost is lost, or below 0; of other modes than emission, the scalar that is shown.
+};
+
+// Scalars of a volume at even places along a ray.
+struct VolumeBlock { // 80 bytes
+    float scalars[8];                //   0 Numerators so far; once all points are weighed, the scalars.
+    float weights[8];                //  32 Denominators so far.
+    uint known;                      //  64 The place after the last whose scalar is known.
+    uint of;                         //  68 0: places are ends of steps; else they are ends of parts of the step before this place.
+    uvec2 pad;                       //  72 Unused.
 };
 
 // What a ray needs beside its march where volumes scatter it.
@@ -356,4 +368,6 @@ vec4 visible_at(uint at) {
 #endif
 
 #define ISO_SEARCHES 91 // By ray
+
+#define VOLUME_BLOCKS 92 // By ray and volume
 #endif

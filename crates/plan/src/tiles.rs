@@ -7,8 +7,8 @@ use kernels::layout::{self, CameraParams, NONE, WaveParams};
 const TILE_WIDTH: u32 = layout::STATE_ROW;
 /// Rays of a wave at most: their state is 128 MiB.
 const WAVE_RAYS: u32 = 1 << 20;
-/// Volumes of a scene, for so many rays.
-const VOLUMES_A_RAY: u32 = 8;
+/// Volumes of a scene, for so many rays: what is known of one along a ray takes 80 bytes.
+const VOLUMES_A_RAY: u32 = 1;
 /// Sides of the blocks of pixels whose rays lie together.
 const BLOCK: u32 = 8;
 

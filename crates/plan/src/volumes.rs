@@ -18,10 +18,10 @@ use crate::steep;
 use crate::transfer::{own_range, stops_of};
 use bytemuck::Zeroable;
 use kernels::layout::{
-    MATERIAL_CLOUD, NONE, ObjectInfo, Polynomial, SCENE_GLOWS, SCENE_MANY_VOLUMES, SCENE_PARTICLES,
-    SCENE_STEEP, SCENE_WEIGHTS, SCENE_WHOLES, VOLUME_AVERAGE, VOLUME_EMISSION, VOLUME_EMITS,
-    VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_LIGHTS, VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH,
-    VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
+    BLOCK_PLACES, MATERIAL_CLOUD, NONE, ObjectInfo, Polynomial, SCENE_GLOWS, SCENE_MANY_VOLUMES,
+    SCENE_PARTICLES, SCENE_STEEP, SCENE_WEIGHTS, SCENE_WHOLES, VOLUME_AVERAGE, VOLUME_EMISSION,
+    VOLUME_EMITS, VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_LIGHTS, VOLUME_MAXIMUM,
+    VOLUME_SHEPARD, VOLUME_SPH, VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
 };
 use particles::{Particle, Sph};
 use points::{Cloud, PointSet, Watch, bounds_of};
@@ -30,6 +30,8 @@ use std::sync::Arc;
 
 /// Samples that a ray may take.
 const MOST_SAMPLES: f64 = 16_000_000.0;
+/// Powers of two that a weight may be away from 1 in a block.
+const MOST_POWERS: f64 = 100.0;
 /// Cells along the longest axis: more cost more memory than they save samples.
 const MOST_CELLS: f64 = 160.0;
 
@@ -232,6 +234,9 @@ pub(crate) fn plan_volumes(
     if let Some(info) = volumes.infos.iter().find(refracts) {
         return Err(PlanError::OpenIsosurface { name: name(info) });
     }
+    for info in &mut volumes.infos {
+        info.block = block_of(info, volumes.step);
+    }
     steep::mark(&mut volumes);
     for (slot, info) in (cloud.points.len() as u32..)
         .zip(volumes.infos.iter_mut().filter(|info| info.mode == VOLUME_ISOSURFACE))
@@ -246,6 +251,19 @@ pub(crate) fn plan_volumes(
         }
     }
     Ok(volumes)
+}
+
+/// Places of a block: as many as leave all weights, from the first place on, in the range of floats with a few decades to
+/// spare, and square distances with their digits.
+fn block_of(info: &VolumeInfo, step: f32) -> u32 {
+    let reach = f64::from(info.square_radius).sqrt();
+    let fits = |places: &u32| {
+        let way = f64::from(places - 1) * f64::from(step);
+        let powers =
+            f64::from(info.inverse_width) * (reach + way).powi(2) * std::f64::consts::LOG2_E;
+        way <= 4.0 * reach && (powers <= MOST_POWERS || info.kernel == VOLUME_SPH)
+    };
+    [BLOCK_PLACES, BLOCK_PLACES / 2, BLOCK_PLACES / 4].into_iter().find(fits).unwrap_or(1)
 }
 
 /// Whether one scalar stands for the whole way of a ray.

@@ -9,6 +9,7 @@ pub mod albedo;
 mod around;
 mod batch;
 pub mod blend;
+mod block;
 pub mod camera_rays;
 mod direction;
 pub mod disc;

@@ -1,13 +1,14 @@
 //! Twin of `march`: rays through volumes, sample after sample (\[T\] §6).
 
+use crate::block::{Block, scalars};
 use crate::camera_rays::Ray;
 use crate::grid::within_box;
 use crate::media::{Media, transmittance};
 use crate::real::{NO_HIT, Real, V3};
 use crate::volume::{Lighting, MOST_SAMPLES, Shown, Sums, cell_at, is_divided, mean_of, scalar_at};
 use kernels::layout::{
-    CELL_NOTHING, MARCH_PARTS, ObjectInfo, VOLUME_AVERAGE, VOLUME_EMISSION, VOLUME_EMITS,
-    VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_MAXIMUM, VOLUME_SPH, VolumeInfo,
+    BLOCK_PLACES, CELL_NOTHING, MARCH_PARTS, ObjectInfo, VOLUME_AVERAGE, VOLUME_EMISSION,
+    VOLUME_EMITS, VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_MAXIMUM, VOLUME_SPH, VolumeInfo,
 };
 use plan::Volumes;
 use std::ops::ControlFlow;
@@ -55,7 +56,7 @@ pub enum Along<'a, R> {
 }
 
 impl<'a, R: Real> Along<'a, R> {
-    fn lamps(self) -> Option<Lighting<'a, R>> {
+    pub(crate) fn lamps(self) -> Option<Lighting<'a, R>> {
         match self {
             Self::OfLamps(lighting) => Some(lighting),
             _ => None,
@@ -171,6 +172,13 @@ impl<R: Real> Scatter<R> {
     }
 }
 
+/// The scalars of a volume in a block of places, and which block that is.
+#[derive(Debug, Clone, Copy)]
+struct Known<R> {
+    of: Option<[u32; 2]>,
+    scalars: [Option<R>; BLOCK_PLACES as usize],
+}
+
 /// Where a ray passes volumes, in steps.
 struct Way<'a, R> {
     ray: &'a Ray<R>,
@@ -189,6 +197,8 @@ struct Place<R> {
     x: V3<R>,
     length: R,
     begin: R,
+    /// Where the whole step begins.
+    whole: R,
     outside: bool,
 }
 
@@ -219,7 +229,8 @@ impl<'a, R: Real> Way<'a, R> {
 
     /// The end of a step, or of a part of it; part 0 is the whole step.
     fn place(&self, place: u32, part: u32) -> Place<R> {
-        let begin = R::of_u32(place.max(1) - 1) * self.step;
+        let whole = R::of_u32(place.max(1) - 1) * self.step;
+        let begin = whole;
         let length = if place > 0 { self.step.min(self.span - begin) } else { R::of(0.0) };
         let (begin, length) = if part > 0 {
             let length = length * R::of(1.0 / f64::from(MARCH_PARTS));
@@ -232,14 +243,45 @@ impl<'a, R: Real> Way<'a, R> {
             x: self.ray.origin + self.ray.direction.times(t),
             length,
             begin: self.from + begin,
+            whole: self.from + whole,
             outside: (place == 0 && self.from > R::of(0.0))
                 || (place == self.steps && part == 0 && self.leaves),
         }
     }
 
-    /// What all volumes show at a place.
-    fn look_all(&self, place: &Place<R>, lighting: Option<Lighting<'_, R>>) -> Vec<End<R>> {
-        self.taking_part.iter().map(|volume| self.look(volume, place, lighting)).collect()
+    /// What all volumes show at a place, the end of a step or of a part of it.
+    fn look_all(
+        &self,
+        at: [u32; 2],
+        known: &mut [Known<R>],
+        lighting: Option<Lighting<'_, R>>,
+    ) -> Vec<End<R>> {
+        let place = self.place(at[0], at[1]);
+        let each = self.taking_part.iter().zip(known);
+        each.map(|(volume, known)| self.look(volume, (at, &place), known, lighting)).collect()
+    }
+
+    /// The block of places that a place is in, and its number in it. The last step is of a length of its own, and a block
+    /// by itself.
+    fn block(&self, volume: &VolumeInfo, [place, part]: [u32; 2]) -> (u32, usize, Block<R>) {
+        let of = self.place(place, part);
+        let number = if part > 0 { part - 1 } else { place };
+        let is_single = part == 0 && place == self.steps;
+        let first = if is_single { number } else { number & !(volume.block - 1) };
+        let end = if part > 0 { MARCH_PARTS - 1 } else { self.steps };
+        let count = if is_single { 1 } else { volume.block.min(end - first) };
+        let step = if part > 0 { of.length } else { self.step };
+        let begin = if is_single {
+            of.begin + of.length
+        } else if part > 0 {
+            of.whole + R::of_u32(first + 1) * step
+        } else {
+            self.from + R::of_u32(first) * step
+        };
+        let direction = self.ray.direction;
+        let first_place = self.ray.origin + direction.times(begin);
+        let block = Block { first: first_place, direction, step, count };
+        (first, (number - first) as usize, block)
     }
 
     /// Whether a step is divided: a scalar may pass a steep piece of its transfer function within it, or something is
@@ -265,16 +307,18 @@ impl<'a, R: Real> Way<'a, R> {
         mut visit: impl FnMut(&Place<R>, &[End<R>], &[End<R>]) -> ControlFlow<()>,
     ) {
         let mut there = vec![End::Unseen; self.taking_part.len()];
+        let mut known =
+            vec![Known { of: None, scalars: [None; BLOCK_PLACES as usize] }; there.len()];
         for at in 0..if self.steps > 0 { self.steps + 1 } else { 0 } {
             let place = self.place(at, 0);
-            let here = self.look_all(&place, lighting);
+            let here = self.look_all([at, 0], &mut known, lighting);
             let mut done = ControlFlow::Continue(());
             if self.is_divided(&there, &here, place.x) {
                 for part in 1..=MARCH_PARTS {
                     let place = self.place(at, part);
                     let next = match part == MARCH_PARTS {
                         true => here.clone(),
-                        false => self.look_all(&place, lighting),
+                        false => self.look_all([at, part], &mut known, lighting),
                     };
                     done = visit(&place, &there, &next);
                     if done.is_break() {
@@ -295,7 +339,8 @@ impl<'a, R: Real> Way<'a, R> {
     fn look(
         &self,
         volume: &VolumeInfo,
-        place: &Place<R>,
+        (at, place): ([u32; 2], &Place<R>),
+        known: &mut Known<R>,
         lighting: Option<Lighting<'_, R>>,
     ) -> End<R> {
         let x = place.x;
@@ -306,16 +351,26 @@ impl<'a, R: Real> Way<'a, R> {
         if cell == CELL_NOTHING {
             return End::Unseen;
         }
+        if let Some(lighting) = lighting {
+            return self.look_at_light(volume, x, lighting);
+        }
+        let (first, k, block) = self.block(volume, at);
+        let of = Some([first, at[1].min(1) * (at[0] + 1)]);
+        if known.of != of {
+            *known = Known { of, scalars: scalars(volume, self.volumes, &block) };
+        }
+        known.scalars[k].map_or(End::Unreached, |scalar| End::At(scalar, V3::splat(R::of(1.0))))
+    }
+
+    /// The scalar and the light at a place, of its own points.
+    fn look_at_light(&self, volume: &VolumeInfo, x: V3<R>, lighting: Lighting<'_, R>) -> End<R> {
         let Some(scalar) = scalar_at(volume, self.volumes, x) else { return End::Unreached };
         let scalar = scalar.max(R::of(-LARGEST)).min(R::of(LARGEST));
-        let light = match lighting {
-            Some(lighting) if volume.shading != VOLUME_EMITS => {
-                let sums = Sums::at(volume, self.volumes, x, Some(lighting));
-                sums.scattered(volume, x, self.ray.direction, lighting.lights)
-            }
-            _ => V3::splat(R::of(1.0)),
-        };
-        End::At(scalar, light)
+        if volume.shading == VOLUME_EMITS {
+            return End::At(scalar, V3::splat(R::of(1.0)));
+        }
+        let sums = Sums::at(volume, self.volumes, x, Some(lighting));
+        End::At(scalar, sums.scattered(volume, x, self.ray.direction, lighting.lights))
     }
 }
 
@@ -421,6 +476,7 @@ pub fn half_lost<R: Real>(
     end: R,
     media: &Media,
     volumes: &Volumes,
+    lighting: Option<Lighting<'_, R>>,
     depth: R,
 ) -> Option<R> {
     let wanted = (R::of(0.5) * depth.absorptance()).depth_of_absorptance();
@@ -430,7 +486,7 @@ pub fn half_lost<R: Real>(
     let way = Way::of(ray, end, media, volumes);
     let mut depth = Sum::<R>::zero();
     let mut lost = None;
-    way.walk(None, |place, there, here| {
+    way.walk(lighting, |place, there, here| {
         let mut extinction = R::of(0.0);
         for (volume, (&there, &here)) in way.taking_part.iter().zip(there.iter().zip(here)) {
             if let Some(of) = Between::of(volume, there, here) {

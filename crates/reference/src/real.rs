@@ -37,6 +37,8 @@ pub trait Real:
     fn floor(self) -> Self;
     /// e^x for x ≤ 0, and 0 below −80.
     fn exp_negative(self) -> Self;
+    /// 2^x for −126 ≤ x ≤ 126.
+    fn power_of_two(self) -> Self;
     /// 1 − e^−x for x ≥ 0, with all digits.
     fn absorptance(self) -> Self;
     /// −ln(1 − x) for 0 ≤ x ≤ ½, with all digits.
@@ -108,6 +110,17 @@ impl Real for f32 {
         let e = (p * (r * r) + r) + 1.0;
         let scale = Self::from_bits(((n as i32 + 127) as u32) << 23);
         if self < -80.0 { 0.0 } else { e * scale }
+    }
+    #[expect(clippy::excessive_precision, reason = "the kernel's digits")]
+    fn power_of_two(self) -> Self {
+        let n = (self + 0.5).floor();
+        let r = self - n;
+        let square = r * r;
+        let low = r * 6.931_470_04e-1 + 1.0;
+        let middle = r * 5.550_733_58e-2 + 2.402_224_24e-1;
+        let high = r * 1.326_472_5e-3 + 9.671_512_99e-3;
+        let p = low + square * (middle + square * high);
+        p * Self::from_bits(((n as i32 + 127) as u32) << 23)
     }
     #[expect(clippy::excessive_precision, reason = "the kernel's digits")]
     fn absorptance(self) -> Self {
@@ -202,6 +215,9 @@ impl Real for f64 {
     }
     fn exp_negative(self) -> Self {
         if self < -80.0 { 0.0 } else { self.exp() }
+    }
+    fn power_of_two(self) -> Self {
+        self.exp2()
     }
     fn absorptance(self) -> Self {
         if self > 80.0 { 1.0 } else { -(-self).exp_m1() }
@@ -341,6 +357,20 @@ mod tests {
         }
         assert_eq!(Real::exp_negative(0.0f32), 1.0);
         assert_eq!(Real::exp_negative(-81.0f32), 0.0);
+    }
+
+    /// Three units in the last place, against f64's power.
+    #[test]
+    fn powers_of_two_are_within_three_ulp() {
+        for i in -126_000..=126_000 {
+            let x = i as f32 * 1e-3;
+            let (ours, exact) = (f64::from(x.power_of_two()), f64::from(x).exp2());
+            assert!((ours / exact - 1.0).abs() < 3.0 * f64::from(f32::EPSILON), "x = {x}: {ours}");
+        }
+        assert_eq!(
+            [-126.0f32, 0.0, 126.0].map(Real::power_of_two),
+            [126, 0, -126].map(|n| 0.5f32.powi(n))
+        );
     }
 
     /// Three units in the last place, against f64's, over 45 decades of optical depth.

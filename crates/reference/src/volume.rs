@@ -127,7 +127,7 @@ pub fn mean_of<R: Real>(volume: &VolumeInfo, volumes: &Volumes, a: R, b: R) -> S
 }
 
 /// Monaghan's cubic spline times π h³, at q = d/h: 1 − 3/2 q² + 3/4 q³ below 1, (2 − q)³/4 below 2.
-fn spline<R: Real>(q: R) -> R {
+pub(crate) fn spline<R: Real>(q: R) -> R {
     let far = (R::of(2.0) - q).max(R::of(0.0));
     let near = (R::of(1.0) - q).max(R::of(0.0));
     R::of(0.25) * (far * far * far) - near * near * near

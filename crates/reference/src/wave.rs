@@ -165,7 +165,7 @@ impl<R: Real> PixelTrace<'_, R> {
         if !self.plan.wants_volume_depth() || volumes.infos.iter().any(is_whole) {
             return march.along;
         }
-        let t = half_lost(ray, end, media, volumes, march.depth);
+        let t = half_lost(ray, end, media, volumes, self.lighting().lamps(), march.depth);
         t.map_or(R::of(-1.0), |t| t * ray.direction.dot(V3::of_f32(self.params.forward)))
     }
 

@@ -9,8 +9,8 @@ use kernels::layout::{
     LISTED_POINTS, LIT_HITS, LIT_MARKS, LIT_RAYS, LIVE, LightSum, LitHit, MARCH_ENDS, MARCH_LIGHTS,
     MARCH_SCATTERS, MARCHES, March, MarchLight, MarchScatter, NEXT_MARKS, NEXT_OFFSETS, OBJECTS,
     OUTCOMES, POLYNOMIALS, Path, SCATTERING_MARKS, SCATTERING_RAYS, SHADOW_PATHS, SLOTS, TALLY,
-    TEXELS_OF_IMAGES, VISIBLE, VOLUME_CELLS, VOLUME_LENGTHS, VOLUME_LIGHTS, VOLUME_POINTS,
-    VOLUME_STOPS, VOLUMES,
+    TEXELS_OF_IMAGES, VISIBLE, VOLUME_BLOCKS, VOLUME_CELLS, VOLUME_LENGTHS, VOLUME_LIGHTS,
+    VOLUME_POINTS, VOLUME_STOPS, VOLUMES, VolumeBlock,
 };
 use plan::{Plan, Volumes, Window};
 use points::device::Surfaces;
@@ -219,6 +219,8 @@ pub(crate) struct VolumeBuffers {
     pub march_scatters: Buffer,
     /// In the search for isosurfaces.
     pub searches: Buffer,
+    /// Scalars at places along rays, one entry a ray and volume.
+    pub blocks: Buffer,
 }
 
 impl VolumeBuffers {
@@ -248,6 +250,12 @@ impl VolumeBuffers {
                 size_of::<MarchScatter>(),
             )?,
             searches: of("searches", volumes.any_isosurface(), rays, size_of::<IsoSearch>())?,
+            blocks: of(
+                "blocks of places",
+                true,
+                rays * volumes.infos.len() as u64,
+                size_of::<VolumeBlock>(),
+            )?,
         };
         let (lengths, stops) = (&volumes.inverse_lengths, &volumes.stops);
         // What steps of each ray end with in each volume; what of each light's reaches each point.
@@ -264,7 +272,8 @@ impl VolumeBuffers {
             .buffer(MARCH_LIGHTS, &own.march_lights)
             .buffer(MARCH_SCATTERS, &own.march_scatters)
             .buffer(VISIBLE, &visible)
-            .buffer(ISO_SEARCHES, &own.searches);
+            .buffer(ISO_SEARCHES, &own.searches)
+            .buffer(VOLUME_BLOCKS, &own.blocks);
         Ok((Some(own), table))
     }
 }

@@ -43,6 +43,8 @@ stage! {
         CELL_KINDS = 3;
         /// Parts of a step that is divided.
         MARCH_PARTS = 64;
+        /// Places along a ray for which points are measured together, at most.
+        BLOCK_PLACES = 8;
     }
     bindings after [wave] {
         /// The volumes of the scene.
@@ -67,6 +69,8 @@ stage! {
         VISIBLE: [f32; 4] as visible;
         /// By ray.
         ISO_SEARCHES: IsoSearch;
+        /// By ray and volume.
+        VOLUME_BLOCKS: VolumeBlock;
     }
     structs {
         /// A field between points (\[T\] §6).
@@ -103,6 +107,10 @@ stage! {
             refracts: u32,
             /// What light does in it: one of `VOLUME_EMITS` and so on.
             shading: u32,
+            /// Places of a block, a power of two: so many that no weight is out of the range of floats.
+            block: u32,
+            /// Unused.
+            pad: [u32; 3],
         }
         /// A cell of a volume's grid.
         VolumeCell {
@@ -155,7 +163,7 @@ stage! {
             step_color: [f32; 3],
             /// Of this step.
             step_extinction: f32,
-            /// Numerator of this volume's scalar at this place, so far.
+            /// Where volumes are lit, numerator of this volume's scalar at this place, so far.
             numerator: f32,
             /// Its denominator.
             denominator: f32,
@@ -166,13 +174,26 @@ stage! {
             place: u32,
             /// Volume.
             volume: u32,
-            /// Of cells around the place.
+            /// Of cells around the places that are asked for.
             row: u32,
             /// Points of the row that are done.
             cursor: u32,
             /// For the channels of volumes: the depth along the viewing axis where half of what is lost is lost, or below 0;
             /// of other modes than emission, the scalar that is shown.
             along: f32,
+        }
+        /// Scalars of a volume at even places along a ray.
+        VolumeBlock {
+            /// Numerators so far; once all points are weighed, the scalars.
+            scalars: [f32; 8],
+            /// Denominators so far.
+            weights: [f32; 8],
+            /// The place after the last whose scalar is known.
+            known: u32,
+            /// 0: places are ends of steps; else they are ends of parts of the step before this place.
+            of: u32,
+            /// Unused.
+            pad: [u32; 2],
         }
         /// What a ray needs beside its march where volumes scatter it.
         MarchScatter {

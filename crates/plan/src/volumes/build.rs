@@ -86,6 +86,8 @@ impl Volumes {
                 VolumeShading::Gradient => VOLUME_GRADIENT,
                 VolumeShading::Scatter { .. } => VOLUME_SCATTERS,
             },
+            block: 0,
+            pad: [0; 3],
         };
         self.list(&info, &points, step);
         self.infos.push(info);

@@ -73,6 +73,13 @@ impl Frame<'_> {
             let bytes = bytes(size_of::<layout::MarchScatter>());
             run.recorder.fill(&volumes.march_scatters, 0, bytes, 0);
         }
+        let volume_count = self.plan.volumes.infos.len();
+        run.recorder.fill(
+            &volumes.blocks,
+            0,
+            bytes(size_of::<layout::VolumeBlock>() * volume_count),
+            0,
+        );
         let module = spirv::march(of, self.rays());
         self.until_none_lives(u32::MAX, None, |frame, _| {
             let wants_depth = u32::from(wants_depth);
@@ -169,7 +176,7 @@ impl Frame<'_> {
             ray_count,
             volume_count: self.plan.volumes.infos.len() as u32,
             step: self.plan.volumes.step,
-            work: self.renderer.run.budget.work() / 2, // two loops a sample
+            work: self.renderer.run.budget.work(),
             light_count: self.plan.lamps().len() as u32,
             ..MarchParams::default()
         }
