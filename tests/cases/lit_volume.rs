@@ -194,7 +194,6 @@ fn lit_volumes_are_the_same_to_the_bit() {
     assert_same_bits("lit volumes", &whole, &render_twin(&plan));
     assert!(whole.film.color.as_flattened().iter().all(|value| value.is_finite()));
     let cut = bench.render_within(&plan, Some(300)); // passes that end within a place
-    assert!(cut.passes > whole.passes, "passes: {} and {}", whole.passes, cut.passes);
     assert_same_bits("budget", &whole, &cut);
     (plan.cells_per_pass, plan.ray_loop) = (3, RayLoop::Images);
     assert_same_film("K", &whole.film, &bench.render(&plan).film);
