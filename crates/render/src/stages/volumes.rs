@@ -124,6 +124,7 @@ impl Frame<'_> {
         let module = spirv::isosurface(of, self.rays());
         self.until_none_lives(u32::MAX, None, |frame, _| {
             let params = frame.march_params(ray_count);
+            let params = MarchParams { work: params.work / 2, ..params }; // two loops a sample
             frame.dispatch(module, &own, &params, line(ray_count));
         })
         .map(|_| ())
