@@ -27,6 +27,7 @@
 #include "math.glsl"
 #include "members.glsl"
 #include "volume.glsl"
+#include "strides.glsl"
 #include "state.glsl"
 #include "index.glsl"
 
@@ -58,6 +59,7 @@ layout(push_constant) uniform Push { MarchParams params; };
 #define CLOSING_IN 2u
 #define TURNING 3u // towards the viewer, at the place
 #define DONE 4u
+#define SEARCH_BITS 3 // of states, in IsoSearch::state; above them the stride and what its cell says
 
 bool is_inside(uint path, uint object) {
     bool found = false;
@@ -81,8 +83,15 @@ uint side_of(VolumeInfo volume, uint seen) {
     return seen == CELL_ABOVE ? ABOVE : (seen == CELL_BELOW ? BELOW : nothing);
 }
 
-float sample_at(vec2 way, uint place) {
-    return min(way.x + (float(place) + 0.5) * params.step, way.y);
+float sample_at(vec2 way, uint place, uint level) {
+    float half_step = scene_has(SCENE_SIZES) ? 0.5 * float(1u << level) : 0.5;
+    return min(way.x + (float(place) + half_step) * params.step, way.y);
+}
+
+// The sample after one of a step of a level, at t; the one at the end of the way is the last.
+uint sample_after(vec2 way, float t, uint place, uint level, uint samples) {
+    if (!scene_has(SCENE_SIZES)) return place + 1u;
+    return t >= way.y ? samples : place + (1u << level);
 }
 
 // Between two places on either side: on the line between their values, or in the middle.
@@ -107,6 +116,10 @@ void main() {
     uint at = list_index();
     if (at >= params.ray_count) return;
     IsoSearch search = searches[at];
+    Stride stride = Stride(bitfieldExtract(search.state, SEARCH_BITS, LEVEL_BITS),
+                           bitfieldExtract(search.state, SEARCH_BITS + LEVEL_BITS, LEVEL_BITS));
+    uint kind = bitfieldExtract(search.state, SEARCH_BITS + 2 * LEVEL_BITS, 2); // of a stretch of steps
+    search.state = bitfieldExtract(search.state, 0, SEARCH_BITS);
     if (search.state == DONE) return;
     Ray ray = load_ray(at);
 #ifdef SHADOWS
@@ -145,69 +158,96 @@ void main() {
             search.place = 0u;
             search.looked = LOOKED;
             search.state = STEPPING;
+            stride = Stride(0u, 0u);
         }
         // Samples whose side is known, and is that of the one before or none, cost a look.
         bool skips = search.state == STEPPING && search.row == 0u && search.cursor == 0u && search.looked != TO_LOOK;
         while (skips && search.place < samples && work_left > 0u) {
-            float t = sample_at(way, search.place);
-            uint seen = seen_from(volume, o + t * d);
+            if (scene_has(SCENE_SIZES)) {
+                uint settles = begins_stretch(stride, search.place) ? 1u : 0u;
+                while (settles > 0u) {
+                    --settles;
+                    vec3 begin = o + (way.x + float(search.place) * params.step) * d;
+                    Look look = look_by_size(volume, begin, 0u);
+                    kind = look.kind;
+                    stride.level = min(look.level, longest_at(search.place));
+                    work_left -= min(work_left, grids_of(volume));
+                }
+            }
+            float t = sample_at(way, search.place, stride.level);
+            uint seen = scene_has(SCENE_SIZES) ? kind : seen_from(volume, o + t * d);
             uint side = side_of(volume, seen);
             bool same = side == search.side || side == UNKNOWN || search.side == UNKNOWN;
             skips = seen != CELL_LOOK && same;
             search.side = skips ? side : search.side;
             search.low = skips ? t : search.low;
             search.looked = skips ? SKIPPED : search.looked;
-            search.place += skips ? 1u : 0u;
-            --work_left;
+            stride.before = skips ? stride.level : stride.before;
+            search.place = skips ? sample_after(way, t, search.place, stride.level, samples) : search.place;
+            work_left -= min(work_left, 1u);
         }
         bool stepping = search.state == STEPPING;
         bool sampling = !stepping || search.place < samples;
         bool turning = search.state == TURNING;
-        float t = stepping ? sample_at(way, search.place) : search.here;
+        float t = stepping ? sample_at(way, search.place, stride.level) : search.here;
         vec3 x = o + t * d;
-        float reach = sqrt(volume.square_radius);
-        uvec3 low, high;
-        cells_around(volume.grid, x, reach, low, high);
-        uint rows = sampling ? (high.y - low.y + 1u) * (high.z - low.z + 1u) : 0u;
+        uint grids = sampling ? grids_of(volume, stepping ? stride.level : 0u) : 0u;
         bool particles = volume.kernel == VOLUME_SPH;
+        uint size = search.row >> SIZE_BITS, row = bitfieldExtract(search.row, 0, SIZE_BITS);
 
-        while (search.row < rows && work_left > 0u) {
-            uvec2 range = row_points(volume, low, high, search.row, x, reach);
-            uint first = range.x + search.cursor;
-            uint count = min(range.y - first, AT_ONCE);
-            uint end_of_turn = first + count;
-            for (uint i = particles ? end_of_turn : first; i < end_of_turn; i += 4u) {
-                FourPoints four = four_points(i, end_of_turn, x);
-                vec4 weights = gaussians(volume, four);
-                search.numerator = add_up(search.numerator, weights * four.scalars);
-                search.denominator = add_up(search.denominator, weights);
+        while (size < grids && work_left > 0u) {
+            VolumeInfo grid = grid_of(volume, size);
+            float reach = sqrt(grid.square_radius);
+            uvec3 low, high;
+            cells_around(grid.grid, x, reach, low, high);
+            uint rows = (high.y - low.y + 1u) * (high.z - low.z + 1u);
+            while (row < rows && work_left > 0u) {
+                uvec2 range = row_points(grid, low, high, row, x, reach);
+                uint first = range.x + search.cursor;
+                uint count = min(range.y - first, AT_ONCE);
+                uint end_of_turn = first + count;
+                for (uint i = particles ? end_of_turn : first; i < end_of_turn; i += 4u) {
+                    FourPoints four = four_points(i, end_of_turn, x);
+                    vec4 weights = gaussians(volume, four, inverse_squares_of(volume, four));
+                    search.numerator = add_up(search.numerator, weights * four.scalars);
+                    search.denominator = add_up(search.denominator, weights);
+                }
+                for (uint i = particles ? first : end_of_turn; i < end_of_turn; i += 4u) {
+                    FourPoints four = four_points(i, end_of_turn, x);
+                    vec4 weights = splines(four, inverse_lengths_of(four));
+                    search.numerator = add_up(search.numerator, weights * four.scalars);
+                    search.denominator = add_up(search.denominator, weights);
+                }
+                uint pulls = turning ? count : 0u;
+                for (uint i = 0u; i < pulls; ++i) {
+                    VolumePoint point = volume_point_at(first + i);
+                    vec3 y = point.position - x;
+                    float square = dot3(y, y);
+                    float inverse_length = particles || scene_has(SCENE_SIZES) ? inverse_length_at(first + i) : 0.0;
+                    float limit = volume.square_radius, width = volume.inverse_width, share = 1.0;
+                    if (has_own_reaches(volume)) {
+                        share = inverse_length * inverse_length;
+                        limit = 1.0 / share;
+                        width = 2.0 * share;
+                    }
+                    float gaussian = square <= limit ? exp_negative(-square * width) * share : 0.0;
+                    float pull = particles ? spline_pull(sqrt(square) * inverse_length, inverse_length) : gaussian;
+                    search.pull += (pull * point.scalar) * y;
+                    search.weights_pull += (particles ? 0.0 : pull) * y;
+                }
+                bool row_ends = first + count >= range.y;
+                search.cursor = row_ends ? 0u : search.cursor + count;
+                row += row_ends ? 1u : 0u;
+                work_left -= min(work_left, count + 2u);
             }
-            for (uint i = particles ? first : end_of_turn; i < end_of_turn; i += 4u) {
-                FourPoints four = four_points(i, end_of_turn, x);
-                vec4 weights = splines(four, inverse_lengths_of(four));
-                search.numerator = add_up(search.numerator, weights * four.scalars);
-                search.denominator = add_up(search.denominator, weights);
-            }
-            uint pulls = turning ? count : 0u;
-            for (uint i = 0u; i < pulls; ++i) {
-                VolumePoint point = volume_point_at(first + i);
-                vec3 y = point.position - x;
-                float square = dot3(y, y);
-                float gaussian =
-                    square <= volume.square_radius ? exp_negative(-square * volume.inverse_width) : 0.0;
-                float inverse_length = particles ? inverse_length_at(first + i) : 0.0;
-                float pull = particles ? spline_pull(sqrt(square) * inverse_length, inverse_length) : gaussian;
-                search.pull += (pull * point.scalar) * y;
-                search.weights_pull += (particles ? 0.0 : pull) * y;
-            }
-            bool row_ends = first + count >= range.y;
-            search.cursor = row_ends ? 0u : search.cursor + count;
-            search.row += row_ends ? 1u : 0u;
-            work_left -= min(work_left, count + 2u);
+            bool ends = row >= rows;
+            size += ends ? 1u : 0u;
+            row = ends ? 0u : row;
         }
+        search.row = row | size << SIZE_BITS;
         work_left -= min(work_left, 4u);
 
-        if (search.row >= rows) {
+        if (size >= grids) {
             bool reached = search.denominator > 0.0;
             bool mean = volume.kernel == VOLUME_SHEPARD;
             float scalar = mean && reached ? search.numerator / (reached ? search.denominator : 1.0) : search.numerator;
@@ -220,7 +260,8 @@ void main() {
             } else if (stepping && search.looked == SKIPPED && side != UNKNOWN && search.side != UNKNOWN && side != search.side) {
                 search.looked = TO_LOOK; // at the place before, first
                 search.side = UNKNOWN;
-                --search.place;
+                stride.level = stride.before;
+                search.place -= 1u << stride.level;
             } else if (stepping) {
                 bool crosses = side != UNKNOWN && search.side != UNKNOWN && side != search.side;
                 search.looked = LOOKED;
@@ -230,7 +271,9 @@ void main() {
                 search.low = crosses ? search.low : t;
                 search.value_low = crosses ? search.value_low : (side == UNKNOWN ? 0.0 : value);
                 search.side = crosses ? search.side : side;
-                search.place = crosses ? 0u : search.place + 1u;
+                uint next_place = sample_after(way, t, search.place, stride.level, samples);
+                stride.before = stride.level;
+                search.place = crosses ? 0u : next_place;
                 search.state = crosses ? CLOSING_IN : STEPPING;
 #ifdef SHADOWS
                 blocked = blocked || crosses;
@@ -281,6 +324,8 @@ void main() {
 #endif
     bool done = search.volume >= params.volume_count;
     search.state = done ? DONE : search.state;
+    search.state |= stride.level << SEARCH_BITS | stride.before << (SEARCH_BITS + LEVEL_BITS) |
+                    kind << (SEARCH_BITS + 2 * LEVEL_BITS);
     searches[at] = search;
     if (!done) atomicAdd(live, 1u);
 }

@@ -86,56 +86,33 @@ layout(std430, binding = VOLUME_BLOCKS) buffer Blocks { VolumeBlock blocks[]; };
 #endif
 layout(push_constant) uniform Push { MarchParams params; };
 
+#ifdef LIT
 #define UNREACHED NO_HIT // the scalar where no point is in reach
-#define UNSEEN (-NO_HIT) // and where nothing is seen from the cell, whatever it is
 #define LARGEST 1e38 // scalar
+#endif
+#define UNSEEN (-NO_HIT) // the scalar where nothing is seen from the cell, whatever it is
 #define MOST_SAMPLES 16777215.0 // floats count little farther, and places have no more bits
 #define PLACE_BITS 24 // of March::place
 #define PART_BITS 7   // of the part, above them
+#ifdef LIT
+#define SEEN_OF(end) (end).x
+#define PASS_OVER(passes) before.x = (passes) ? UNSEEN : before.x; ahead.x = (passes) ? UNSEEN : ahead.x;
+#else
+#define SEEN_OF(end) (end)
+#define PASS_OVER(passes) before = (passes) ? UNSEEN : before; ahead = (passes) ? UNSEEN : ahead;
+#endif
 
 #include "sums.glsl"
 #include "steps.glsl"
 #ifdef LIT
 #include "lit_sample.glsl"
 #else
-#include "block.glsl"
+#include "known_block.glsl"
 #endif
 
 bool is_scalar(float end) {
     return abs(end) <= LARGEST;
 }
-
-#ifndef LIT
-// Goes on with the scalars of a block; whether all points are weighed.
-bool block_of(VolumeInfo volume, Block block, uint block_at, inout March march, inout uint work_left) {
-    float numerators[BLOCK_PLACES], denominators[BLOCK_PLACES];
-    for (int k = 0; k < BLOCK_PLACES; ++k) numerators[k] = denominators[k] = 0.0;
-    uint resumes = march.row > 0u || march.cursor > 0u ? 1u : 0u;
-    while (resumes > 0u) {
-        --resumes;
-        for (int k = 0; k < BLOCK_PLACES; ++k) {
-            numerators[k] = blocks[block_at].scalars[k];
-            denominators[k] = blocks[block_at].weights[k];
-        }
-    }
-    BlockRows rows = rows_of(volume, block);
-    weigh_points(volume, block, numerators, denominators, rows, march.row, march.cursor, work_left);
-    bool weighed = march.row >= rows.count;
-    for (int k = 0; k < BLOCK_PLACES; ++k) {
-        bool reached = denominators[k] > 0.0;
-        bool mean = volume.kernel == VOLUME_SHEPARD && reached;
-        float scalar = (numerators[k] * place_factor(volume, block.step, k)) / (mean ? denominators[k] : 1.0);
-        float known = reached ? min(max(scalar, -LARGEST), LARGEST) : UNREACHED;
-        blocks[block_at].scalars[k] = weighed ? known : numerators[k];
-    }
-    uint stops = weighed ? 0u : 1u;
-    while (stops > 0u) {
-        --stops;
-        for (int k = 0; k < BLOCK_PLACES; ++k) blocks[block_at].weights[k] = denominators[k];
-    }
-    return weighed;
-}
-#endif
 
 void finish(uint at, uint path, March march) {
 #ifdef SHADOWS
@@ -163,6 +140,8 @@ void main() {
     Ray ray = load_ray(at);
     float end = ray.hit_slot != NONE ? hits[at].t : NO_HIT;
 #endif
+    Stride stride = stride_of(march.state);
+    march.state = bitfieldExtract(march.state, 0, STATE_BITS);
     if (march.state == 2u || !begins) return;
 #ifdef LIT
     MarchLight sums = march_lights[at];
@@ -193,15 +172,17 @@ void main() {
     uint part = steep ? bitfieldExtract(march.place, PLACE_BITS, PART_BITS) : 0u; // 0: the whole step
     bool divided = steep && bitfieldExtract(march.place, 31, 1) != 0u;
     march.place = steep ? bitfieldExtract(march.place, 0, PLACE_BITS) : march.place;
-    uint slots = steep ? 2u : 1u;
+    uint last_end = steep ? 1u : 0u;
+    uint slots = last_end + (scene_has(SCENE_SIZES) ? 2u : 1u); // the last: whether this stretch of steps sees the volume
     uint end_at = (at * params.volume_count + march.volume) * slots;
 #ifdef LIT
     vec4 before = ends[end_at]; // and the light there
-    vec4 ahead = ends[end_at + (slots - 1u)]; // at the end of the whole step
+    vec4 ahead = ends[end_at + last_end]; // at the end of the whole step
 #else
     float before = ends[end_at];
-    float ahead = ends[end_at + (slots - 1u)];
+    float ahead = ends[end_at + last_end];
 #endif
+    bool seen = scene_has(SCENE_SIZES) && SEEN_OF(ends[end_at + last_end + 1u]) > 0.0;
 #ifdef LIT
     uint known = 0u, known_of = 0u;
 #else
@@ -213,28 +194,43 @@ void main() {
         Sample at_place;
         uint look, number; // of the place among those that blocks count
         while (goes_on && march.place < places && work_left > 0u) {
-            at_place = sample_of(ray, way, end, march.place, part, steps);
-            bool fresh = alone && part == 0u && march.row == 0u && march.cursor == 0u;
-            look = look_at(volume, at_place);
-            while (fresh && look == LOOK_NOWHERE && march.place < places && work_left > 0u) {
-                ++march.place;
-                --work_left;
-#ifdef LIT
-                before.x = UNSEEN;
-                ahead.x = UNSEEN;
-#else
-                before = UNSEEN;
-                ahead = UNSEEN;
-#endif
-                at_place = sample_of(ray, way, end, march.place, part, steps);
+            at_place = sample_of(ray, way, end, march.place, part, steps, stride);
+            number = part > 0u ? part - 1u : march.place;
+            uint numbers_of = part > 0u ? march.place + 1u : 0u; // what they count
+            bool in_known = number < known && numbers_of == known_of;
+            bool fresh = part == 0u && march.row == 0u && march.cursor == 0u;
+            if (scene_has(SCENE_SIZES)) {
+                uint settles = fresh && !in_known && begins_stretch(stride, march.place) ? 1u : 0u;
+                while (settles > 0u) {
+                    settle(volume, march.volume, at_place, march.place, path, stride, seen);
+                    work_left -= min(work_left, grids_of(volume) + params.volume_count);
+                    // All of a stretch from which nothing is seen is passed over at once.
+                    bool passes = alone && !seen && march.place < steps;
+                    uint next_place = (march.place | ((uint(STRIDE_STEPS) << stride.level) - 1u)) + 1u;
+                    march.place = passes ? min(next_place, steps) : march.place;
+                    stride.before = passes ? stride.level : stride.before;
+                    PASS_OVER(passes)
+                    at_place = sample_of(ray, way, end, march.place, part, steps, stride);
+                    settles = passes && work_left > 0u && begins_stretch(stride, march.place) ? 1u : 0u;
+                }
+                number = part > 0u ? number : march.place;
+                look = at_place.outside ? LOOK_OUTSIDE : (seen ? LOOK_AROUND : LOOK_NOWHERE);
+            } else {
                 look = look_at(volume, at_place);
+                while (alone && fresh && look == LOOK_NOWHERE && march.place < places && work_left > 0u) {
+                    ++march.place;
+                    --work_left;
+                    PASS_OVER(true)
+                    at_place = sample_of(ray, way, end, march.place, part, steps, stride);
+                    look = look_at(volume, at_place);
+                }
+                number = part > 0u ? number : march.place;
             }
+            in_known = number < known && numbers_of == known_of;
             look = march.place < places && takes_part(volume, path) ? look : LOOK_NOWHERE;
             bool is_known = part == MARCH_PARTS; // by the whole step
             bool particles = scene_has(SCENE_PARTICLES) && (!scene_has(SCENE_WEIGHTS) || volume.kernel == VOLUME_SPH);
-            number = part > 0u ? part - 1u : march.place;
-            uint numbers_of = part > 0u ? march.place + 1u : 0u; // what they count
-            goes_on = look != LOOK_AROUND || is_known || (number < known && numbers_of == known_of);
+            goes_on = look != LOOK_AROUND || is_known || in_known;
             work_left -= min(work_left, 16u); // turns of loops
             uint composes = goes_on && march.place < places ? 1u : 0u;
             while (composes > 0u) {
@@ -249,7 +245,8 @@ void main() {
                     sampled = march.denominator > 0.0 ? min(max(scalar, -LARGEST), LARGEST) : UNREACHED;
 #else
                     bool single = part == 0u && march.place == steps;
-                    sampled = blocks[block_at].scalars[single ? 0u : number & (volume.block - 1u)];
+                    uint in_block = (part > 0u ? number : number >> stride.level) & (volume.block - 1u);
+                    sampled = blocks[block_at].scalars[single ? 0u : in_block];
 #endif
                 }
                 float here = look == LOOK_NOWHERE ? UNSEEN : (look == LOOK_AROUND && !is_known ? sampled : UNREACHED);
@@ -399,7 +396,10 @@ void main() {
                 march.depth = dark ? OPAQUE : march.depth;
                 bool over = ends_step && (dark || found || ends_here);
                 uint next_part = (closer || part > 0u) && !over && !is_known ? part + 1u : 0u;
-                march.place = over ? places : (ends_step && next_part == 0u ? march.place + 1u : march.place);
+                bool goes_to_next = ends_step && next_part == 0u;
+                uint next_place = place_after(march.place, stride, steps);
+                march.place = over ? places : (goes_to_next ? next_place : march.place);
+                stride.before = goes_to_next ? stride.level : stride.before;
                 part = last ? next_part : part;
                 divided = divided && !last;
             }
@@ -409,9 +409,11 @@ void main() {
                 uint next_at = (at * params.volume_count + march.volume) * slots;
                 ends[end_at] = before;
                 if (steep) ends[end_at + 1u] = ahead;
+                if (scene_has(SCENE_SIZES)) SEEN_OF(ends[end_at + last_end + 1u]) = seen ? 1.0 : 0.0;
                 end_at = next_at;
                 before = ends[end_at];
-                ahead = ends[end_at + (slots - 1u)];
+                ahead = ends[end_at + last_end];
+                if (scene_has(SCENE_SIZES)) seen = SEEN_OF(ends[end_at + last_end + 1u]) > 0.0;
                 volume = volumes[march.volume];
                 pivots = pivots_of(volume);
 #ifndef LIT
@@ -426,19 +428,23 @@ void main() {
         uint weighs = goes_on ? 0u : 1u;
         while (weighs > 0u) {
             --weighs;
+            uint level_of_step = part > 0u ? stride.before : stride.level;
 #ifdef LIT
-            bool weighed = weigh_lit(volume, at_place.x, march, sums, work_left);
+            bool weighed = weigh_lit(volume, at_place.x, level_of_step, march, sums, work_left);
             uint last = number;
 #else
             // The last step is of a length of its own, and a block by itself.
             bool single = part == 0u && march.place == steps;
-            uint first = single ? number : number & ~(volume.block - 1u);
-            uint last = single ? number : min(first + volume.block, part > 0u ? uint(MARCH_PARTS) - 1u : steps) - 1u;
-            float length_of_step = part > 0u ? at_place.length_of_step : params.step;
-            float begin = part > 0u ? at_place.whole + float(first + 1u) * length_of_step : way.x + float(first) * length_of_step;
+            uint level = part > 0u ? 0u : stride.level; // parts and places count in numbers of their own
+            uint first = single ? number : (number >> level & ~(volume.block - 1u)) << level;
+            uint until = part > 0u ? uint(MARCH_PARTS) - 1u : steps;
+            uint last = single ? number : min(first + (volume.block << level), until) - 1u;
+            float count_by = part > 0u ? at_place.length_of_step : params.step;
+            float length_of_step = count_by * float(1u << level);
+            float begin = part > 0u ? at_place.whole + float(first + 1u) * length_of_step : way.x + float(first) * count_by;
             begin = single ? at_place.begin + at_place.length_of_step : begin;
             Block block = Block(ray.origin + begin * ray.direction, ray.direction, length_of_step,
-                                float(number - first) * length_of_step, float(last - first) * length_of_step);
+                                float(number - first) * count_by, float(last - first) * count_by, level_of_step);
             bool weighed = block_of(volume, block, block_at, march, work_left);
             march.row = weighed ? 0u : march.row;
 #endif
@@ -452,6 +458,7 @@ void main() {
 #endif
     ends[end_at] = before;
     if (steep) ends[end_at + 1u] = ahead;
+    if (scene_has(SCENE_SIZES)) SEEN_OF(ends[end_at + last_end + 1u]) = seen ? 1.0 : 0.0;
     bool done = march.place >= places;
     bool whole = is_whole(volumes[0]);
     bool again = march.state == 3u;
@@ -464,6 +471,7 @@ void main() {
         again = again && march.along < 0.0;
         march.along = params.wants_depth != 0u && !whole && !again ? -1.0 : march.along;
         march.place = again ? 0u : march.place;
+        stride = again ? Stride(0u, 0u) : stride;
 #ifndef LIT
         for (uint i = 0u; again && i < params.volume_count; ++i) blocks[at * params.volume_count + i].known = 0u;
 #endif
@@ -472,7 +480,7 @@ void main() {
         done = !again;
 #endif
     }
-    march.state = done ? 2u : (again ? 3u : 1u);
+    march.state = with_stride(done ? 2u : (again ? 3u : 1u), stride);
     uint above = part | (divided ? 1u : 0u) << PART_BITS;
     march.place = steep ? bitfieldInsert(march.place, above, PLACE_BITS, PART_BITS + 1) : march.place;
     marches[at] = march;

@@ -19,6 +19,7 @@ struct Block {
     float step;
     float from; // how far along the ray from the first place those begin that are asked for
     float to;   // and end
+    uint level; // of the steps there
 };
 
 #define BLOCK_MARGIN 2e-3 // of a cell, as ROW_MARGIN: more than rounding moves a point or the ray
@@ -52,7 +53,12 @@ BlockRows rows_of(VolumeInfo volume, Block block) {
     vec3 last = vec3(grid.resolution - 1u);
     uvec3 low = whole_of(min(max(low_cell, vec3(0.0)), last)), high = whole_of(min(max(high_cell, vec3(0.0)), last));
     uint height = high.y - low.y + 1u;
-    return BlockRows(low, high, height, height * (high.z - low.z + 1u),
+    uint count = height * (high.z - low.z + 1u);
+    if (scene_has(SCENE_SIZES)) {
+        bool apart = any(lessThan(high_cell, vec3(0.0))) || any(greaterThan(low_cell, vec3(grid.resolution)));
+        count = apart ? 0u : count;
+    }
+    return BlockRows(low, high, height, count,
                      (block.first - grid.origin) * grid.inverse_edge, block.direction * grid.inverse_edge,
                      reach * grid.inverse_edge + BLOCK_MARGIN,
                      volume.square_radius + BLOCK_WIDER * (farthest * farthest));
@@ -106,15 +112,16 @@ Run next_run(VolumeInfo volume, Block block, BlockRows rows, inout uint row, ino
 #define LEAST_POWER -126.0
 #define LEAST_WEIGHT -115.415604 // the power of two that is e^-80: less does not matter
 
-// Adds the points of the rows, from a row and a place in it on, to the sums of eight places, until all are added or the
-// work is done. Weights lack the factor that is the same for all points of a place (place_factor).
-void weigh_points(VolumeInfo volume, Block block, inout float numerators[BLOCK_PLACES],
-                  inout float denominators[BLOCK_PLACES], BlockRows rows, inout uint row, inout uint cursor,
-                  inout uint work_left) {
+// Adds the points of the rows of a grid, from a row and a place in it on, to the sums of eight places, until all are added
+// or the work is done.
+void weigh_rows(VolumeInfo volume, Block block, inout float numerators[BLOCK_PLACES],
+                inout float denominators[BLOCK_PLACES], BlockRows rows, inout uint row, inout uint cursor,
+                inout uint work_left) {
     bool particles = scene_has(SCENE_PARTICLES) && (!scene_has(SCENE_WEIGHTS) || volume.kernel == VOLUME_SPH);
+    bool own = has_own_reaches(volume);
     float s = block.step;
     float width = volume.inverse_width * -1.44269504; // of weights as powers of two
-    float twice = -2.0 * width * s;
+    float square_radius = volume.square_radius;
     float bend = 2.0 * (s * s);
     while (row < rows.count && work_left > 0u) {
         Run one = next_run(volume, block, rows, row, cursor, work_left);
@@ -137,16 +144,26 @@ void weigh_points(VolumeInfo volume, Block block, inout float numerators[BLOCK_P
             float along = dot3(y, block.direction);
             float square = dot3(y, y);
             float more = s * s - (2.0 * s) * along;
-            float weight = 0.0, ratio = 0.0, inverse_length = 0.0;
+            float weight = 0.0, ratio = 0.0, fade = 1.0, inverse_length = 0.0;
+            if (scene_has(SCENE_PARTICLES) || scene_has(SCENE_SIZES)) inverse_length = inverse_length_at(index);
             if (scene_has(SCENE_WEIGHTS)) {
+                float further = 0.0; // of powers from one place to the next
+                if (scene_has(SCENE_SIZES)) {
+                    float inverse_square = inverse_length * inverse_length;
+                    width = own ? (2.0 * inverse_square) * -1.44269504 : width;
+                    square_radius = own ? 1.0 / inverse_square : square_radius;
+                    further = own ? width * (s * s) : 0.0;
+                    fade = power_of_two(max(2.0 * further, LEAST_POWER));
+                }
                 float power = width * square;
                 weight = power < LEAST_WEIGHT ? 0.0 : power_of_two(max(power, LEAST_POWER));
-                ratio = power_of_two(min(max(twice * along, LEAST_POWER), -LEAST_POWER));
+                float more_powers = (-2.0 * width * s) * along;
+                if (scene_has(SCENE_SIZES)) more_powers += further;
+                ratio = power_of_two(min(max(more_powers, LEAST_POWER), -LEAST_POWER));
             }
-            if (scene_has(SCENE_PARTICLES)) inverse_length = inverse_length_at(index);
 #define ADD_AT(k) { \
             float here = 0.0; \
-            if (scene_has(SCENE_WEIGHTS)) here = square <= volume.square_radius ? weight : 0.0; \
+            if (scene_has(SCENE_WEIGHTS)) here = square <= square_radius ? weight : 0.0; \
             if (scene_has(SCENE_PARTICLES)) { \
                 float of_particle = spline(sqrt(max(square, 0.0)) * inverse_length); \
                 here = particles ? of_particle : here; \
@@ -154,6 +171,7 @@ void weigh_points(VolumeInfo volume, Block block, inout float numerators[BLOCK_P
             denominators[k] += here; \
             numerators[k] += here * point.scalar; \
             weight *= ratio; \
+            if (scene_has(SCENE_SIZES)) ratio *= fade; \
             square += more; \
             more += bend; \
             }
@@ -162,9 +180,36 @@ void weigh_points(VolumeInfo volume, Block block, inout float numerators[BLOCK_P
     }
 }
 
+// Adds the points of all grids, from a row and a place in it on, to the sums of eight places, until all are added or the
+// work is done; whether all are. Weights of points with one reach lack the factor that is the same for all points of a place
+// (place_factor).
+bool weigh_points(VolumeInfo volume, Block block, inout float numerators[BLOCK_PLACES],
+                  inout float denominators[BLOCK_PLACES], inout uint row_of_size, inout uint cursor, inout uint work_left) {
+    if (!scene_has(SCENE_SIZES)) {
+        BlockRows rows = rows_of(volume, block);
+        weigh_rows(volume, block, numerators, denominators, rows, row_of_size, cursor, work_left);
+        return row_of_size >= rows.count;
+    }
+    uint grids = grids_of(volume, block.level);
+    uint size = row_of_size >> SIZE_BITS, row = bitfieldExtract(row_of_size, 0, SIZE_BITS);
+    while (size < grids && work_left > 0u) {
+        VolumeInfo grid = grid_of(volume, size);
+        BlockRows rows = rows_of(grid, block);
+        weigh_rows(grid, block, numerators, denominators, rows, row, cursor, work_left);
+        work_left -= min(work_left, 2u);
+        bool ends = row >= rows.count;
+        size += ends ? 1u : 0u;
+        row = ends ? 0u : row;
+    }
+    row_of_size = row | size << SIZE_BITS;
+    return size >= grids;
+}
+
 // What weigh_points leaves out of the weights of a volume at a place of a block.
 float place_factor(VolumeInfo volume, float step, int k) {
     float away = float(k) * step;
-    return volume.kernel == VOLUME_SUM ? power_of_two(max((volume.inverse_width * -1.44269504) * (away * away), LEAST_POWER)) : 1.0;
+    return volume.kernel == VOLUME_SUM && !has_own_reaches(volume)
+        ? power_of_two(max((volume.inverse_width * -1.44269504) * (away * away), LEAST_POWER))
+        : 1.0;
 }
 #endif

@@ -18,49 +18,60 @@ vec4 visible_sum(vec4 sum, vec4 weights, FourPoints four) {
         + weights.z * visible_at(four.at[2])) + weights.w * visible_at(four.at[3]);
 }
 
-// Adds the points of the rows of cells around x, from the march's row on, to its sums, until all are added or the work is
+// Adds the points of the rows of cells around x, where steps are of a level, from the march's row on, to its sums, until all are added or the work is
 // done; whether they are.
-bool weigh_lit(VolumeInfo volume, vec3 x, inout March march, inout MarchLight sums, inout uint work_left) {
-    float reach = sqrt(volume.square_radius);
-    uvec3 low, high;
-    cells_around(volume.grid, x, reach, low, high);
-    uint rows = (high.y - low.y + 1u) * (high.z - low.z + 1u);
+bool weigh_lit(VolumeInfo volume, vec3 x, uint level, inout March march, inout MarchLight sums, inout uint work_left) {
     bool particles = scene_has(SCENE_PARTICLES) && (!scene_has(SCENE_WEIGHTS) || volume.kernel == VOLUME_SPH);
-    while (march.row < rows && work_left > 0u) {
-        uvec2 range = row_points(volume, low, high, march.row, x, reach);
-        uint first = range.x + march.cursor;
-        uint count = min(range.y - first, AT_ONCE);
-        uint end = first + count;
-        if (scene_has(SCENE_WEIGHTS)) {
-            for (uint i = particles ? end : first; i < end; i += 4u) {
-                FourPoints four = four_points(i, end, x);
-                vec4 weights = gaussians(volume, four);
-                vec4 weighted = weights * four.scalars;
-                march.numerator = add_up(march.numerator, weighted);
-                march.denominator = add_up(march.denominator, weights);
-                sums.pull = add_up(sums.pull, weighted, four);
-                sums.weights_pull = add_up(sums.weights_pull, weights, four);
-                sums.visible = visible_sum(sums.visible, weights, four);
+    uint grids = grids_of(volume, level);
+    uint size = march.row >> SIZE_BITS, row = bitfieldExtract(march.row, 0, SIZE_BITS);
+    while (size < grids && work_left > 0u) {
+        VolumeInfo grid = grid_of(volume, size);
+        float reach = sqrt(grid.square_radius);
+        uvec3 low, high;
+        cells_around(grid.grid, x, reach, low, high);
+        uint rows = (high.y - low.y + 1u) * (high.z - low.z + 1u);
+        while (row < rows && work_left > 0u) {
+            uvec2 range = row_points(grid, low, high, row, x, reach);
+            uint first = range.x + march.cursor;
+            uint count = min(range.y - first, AT_ONCE);
+            uint end = first + count;
+            if (scene_has(SCENE_WEIGHTS)) {
+                for (uint i = particles ? end : first; i < end; i += 4u) {
+                    FourPoints four = four_points(i, end, x);
+                    vec4 inverse_squares = inverse_squares_of(volume, four);
+                    vec4 weights = gaussians(volume, four, inverse_squares);
+                    vec4 weighted = weights * four.scalars;
+                    march.numerator = add_up(march.numerator, weighted);
+                    march.denominator = add_up(march.denominator, weights);
+                    vec4 pulls = weights * inverse_squares;
+                    sums.pull = add_up(sums.pull, pulls * four.scalars, four);
+                    sums.weights_pull = add_up(sums.weights_pull, pulls, four);
+                    sums.visible = visible_sum(sums.visible, weights, four);
+                }
             }
-        }
-        if (scene_has(SCENE_PARTICLES)) {
-            for (uint i = particles ? first : end; i < end; i += 4u) {
-                FourPoints four = four_points(i, end, x);
-                vec4 inverse_lengths = inverse_lengths_of(four);
-                vec4 weights = splines(four, inverse_lengths);
-                march.numerator = add_up(march.numerator, weights * four.scalars);
-                march.denominator = add_up(march.denominator, weights);
-                vec4 pulls = spline_pulls(sqrt(four.squares) * inverse_lengths, inverse_lengths);
-                sums.pull = add_up(sums.pull, mix(vec4(0.0), pulls * four.scalars, four.are_there), four);
-                sums.visible = visible_sum(sums.visible, weights, four);
+            if (scene_has(SCENE_PARTICLES)) {
+                for (uint i = particles ? first : end; i < end; i += 4u) {
+                    FourPoints four = four_points(i, end, x);
+                    vec4 inverse_lengths = inverse_lengths_of(four);
+                    vec4 weights = splines(four, inverse_lengths);
+                    march.numerator = add_up(march.numerator, weights * four.scalars);
+                    march.denominator = add_up(march.denominator, weights);
+                    vec4 pulls = spline_pulls(sqrt(four.squares) * inverse_lengths, inverse_lengths);
+                    sums.pull = add_up(sums.pull, mix(vec4(0.0), pulls * four.scalars, four.are_there), four);
+                    sums.visible = visible_sum(sums.visible, weights, four);
+                }
             }
+            bool row_ends = first + count >= range.y;
+            march.cursor = row_ends ? 0u : march.cursor + count;
+            row += row_ends ? 1u : 0u;
+            work_left -= min(work_left, count + 2u);
         }
-        bool row_ends = first + count >= range.y;
-        march.cursor = row_ends ? 0u : march.cursor + count;
-        march.row += row_ends ? 1u : 0u;
-        work_left -= min(work_left, count + 2u);
+        bool ends = row >= rows;
+        size += ends ? 1u : 0u;
+        row = ends ? 0u : row;
     }
-    return march.row >= rows;
+    march.row = row | size << SIZE_BITS;
+    return size >= grids;
 }
 
 #define INVERSE_PI 0.318309886
@@ -74,7 +85,8 @@ vec3 scattered(VolumeInfo volume, float numerator, float weights, MarchLight sum
     vec3 gradient = gradient_of(volume, scalar, sums.pull, sums.weights_pull);
     float square = dot3(gradient, gradient);
     float reach = volume.square_radius;
-    float most = (numerator * numerator) * (volume.kernel == VOLUME_SPH ? 1.0 / reach : reach);
+    bool per_length = volume.kernel == VOLUME_SPH || has_own_reaches(volume);
+    float most = (numerator * numerator) * (per_length ? 1.0 / reach : reach);
     bool steep = volume.shading == VOLUME_GRADIENT && square > (FLATTEST * FLATTEST) * most;
     vec3 normal = steep ? gradient / (steep ? sqrt(square) : 1.0) : vec3(0.0);
     normal = dot3(normal, d) > 0.0 ? -normal : normal;

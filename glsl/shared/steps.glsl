@@ -4,6 +4,7 @@
 // Whoever includes this has push constants `params` of a march, and buffers `paths` and, with LIT, the light of points.
 #ifndef STEPS_GLSL
 #define STEPS_GLSL
+#include "strides.glsl"
 
 bool is_inside(uint path, uint object) {
     bool found = false;
@@ -41,9 +42,15 @@ struct Sample {
     bool outside; // at the border of the volumes' boxes, where no point is in reach
 };
 
-Sample sample_of(Ray ray, vec2 way, float end, uint place, uint part, uint steps) {
-    float whole = float(max(place, 1u) - 1u) * params.step, begin = whole;
-    float length_of_step = place > 0u ? min(params.step, (way.y - way.x) - whole) : 0.0;
+Sample sample_of(Ray ray, vec2 way, float end, uint place, uint part, uint steps, Stride stride) {
+    uint from = max(place, 1u) - 1u;
+    float longest = params.step;
+    if (scene_has(SCENE_SIZES)) {
+        from = (from >> stride.before) << stride.before;
+        longest = params.step * float(1u << stride.before);
+    }
+    float whole = float(from) * params.step, begin = whole;
+    float length_of_step = place > 0u ? min(longest, (way.y - way.x) - whole) : 0.0;
     length_of_step *= part > 0u ? 1.0 / float(MARCH_PARTS) : 1.0;
     begin += part > 0u ? float(part - 1u) * length_of_step : 0.0;
     vec3 x = ray.origin + (way.x + (begin + length_of_step)) * ray.direction;
@@ -55,13 +62,29 @@ Sample sample_of(Ray ray, vec2 way, float end, uint place, uint part, uint steps
 #define LOOK_OUTSIDE 1u // no point is in reach
 #define LOOK_AROUND 2u
 
-// What is to be done at a place.
+// What is to be done at a place, where volumes have one grid.
 uint look_at(VolumeInfo volume, Sample at) {
     vec3 cells_off = (at.x - volume.grid.origin) * volume.grid.inverse_edge;
     bool inside = all(greaterThanEqual(cells_off, vec3(0.0))) && all(lessThan(cells_off, vec3(volume.grid.resolution)));
     bool seen = volume_cell_at(volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, at.x))).counts != 0u;
     return !inside || at.outside ? LOOK_OUTSIDE : (seen ? LOOK_AROUND : LOOK_NOWHERE);
 }
+
+// Where a stretch of steps begins: their length, the longest that all volumes allow and of which a stretch may begin at that
+// place, and whether this volume is seen from them. `which` it is among the volumes: the first sets the length.
+void settle(VolumeInfo volume, uint which, Sample at, uint place, uint path, inout Stride stride, inout bool seen) {
+    Look look = look_by_size(volume, at.x, stride.before);
+    seen = look.kind != CELL_NOTHING;
+    uint longest = scene_has(SCENE_MANY_VOLUMES) ? 31u : look.level;
+    uint count = scene_has(SCENE_MANY_VOLUMES) && which == 0u ? params.volume_count : 0u;
+    for (uint i = 0u; i < count; ++i) {
+        VolumeInfo other = volumes[i];
+        uint own = look_by_size(other, at.x, 0u).level;
+        longest = min(longest, takes_part(other, path) ? own : longest);
+    }
+    stride.level = which == 0u ? min(longest, longest_at(place)) : stride.level;
+}
+
 #define OPAQUE NO_HIT // the optical depth from 69 on
 #define DEEPEST 69.0775528 // optical depth through which nothing is seen, a transmittance of 1e-30
 

@@ -11,6 +11,43 @@
 
 layout(std430, binding = VOLUMES) readonly buffer Volumes { VolumeInfo volumes[]; };
 
+#define SIZE_BITS 24 // of rows, below those of the grid by size that they are of
+
+// How many grids a volume has.
+uint grids_of(VolumeInfo volume) {
+    return scene_has(SCENE_SIZES) ? max(volume.size_count, 1u) : 1u;
+}
+
+// How many of these have points that may be in reach where steps are of a level: all but those of shorter steps.
+uint grids_of(VolumeInfo volume, uint level) {
+    uint count = grids_of(volume);
+    uint by_size = scene_has(SCENE_SIZES) && volume.size_count > 0u ? 1u : 0u;
+    while (by_size > 0u) {
+        by_size = count > 1u && volumes[volume.first_size + count - 1u].level < level ? 1u : 0u;
+        count -= by_size;
+    }
+    return count;
+}
+
+// A volume with one of its grids by size, if it has any.
+VolumeInfo grid_of(VolumeInfo volume, uint size) {
+    uint by_size = scene_has(SCENE_SIZES) && volume.size_count > 0u ? 1u : 0u;
+    while (by_size > 0u) {
+        --by_size;
+        uint at = volume.first_size + min(size, volume.size_count - 1u);
+        volume.grid = volumes[at].grid;
+        volume.first_cell = volumes[at].first_cell;
+        volume.square_radius = volumes[at].square_radius;
+        volume.level = volumes[at].level;
+    }
+    return volume;
+}
+
+// Whether each point has a reach of its own.
+bool has_own_reaches(VolumeInfo volume) {
+    return scene_has(SCENE_SIZES) && volume.inverse_width == 0.0;
+}
+
 vec4 color_of_stop(uint at) {
     return vec4(stop_color_at(at), stop_extinction_at(at));
 }
@@ -82,10 +119,6 @@ bvec4 both(bvec4 a, bvec4 b) {
     return bvec4(a.x && b.x, a.y && b.y, a.z && b.z, a.w && b.w);
 }
 
-vec4 gaussians(VolumeInfo volume, FourPoints four) {
-    bvec4 count = both(four.are_there, lessThanEqual(four.squares, vec4(volume.square_radius)));
-    return mix(vec4(0.0), exp_negative(-four.squares * volume.inverse_width), count);
-}
 
 // In the order of the points, as if one by one.
 float add_up(float sum, vec4 terms) {
@@ -108,6 +141,25 @@ SPLINE(float) SPLINE(vec4)
 vec4 inverse_lengths_of(FourPoints four) {
     return vec4(inverse_length_at(four.at[0]), inverse_length_at(four.at[1]), inverse_length_at(four.at[2]),
                 inverse_length_at(four.at[3]));
+}
+
+// Weights; `inverse_squares` of reaches are asked for where points have their own.
+vec4 gaussians(VolumeInfo volume, FourPoints four, vec4 inverse_squares) {
+    vec4 limits = vec4(volume.square_radius), widths = vec4(volume.inverse_width);
+    if (scene_has(SCENE_SIZES)) {
+        bool own = has_own_reaches(volume);
+        limits = own ? 1.0 / inverse_squares : limits;
+        widths = own ? 2.0 * inverse_squares : widths;
+    }
+    bvec4 count = both(four.are_there, lessThanEqual(four.squares, limits));
+    return mix(vec4(0.0), exp_negative(-four.squares * widths), count);
+}
+
+// 1/r^2 of points with reaches r of their own; 1 of others.
+vec4 inverse_squares_of(VolumeInfo volume, FourPoints four) {
+    if (!scene_has(SCENE_SIZES)) return vec4(1.0);
+    vec4 inverse = inverse_lengths_of(four);
+    return has_own_reaches(volume) ? inverse * inverse : vec4(1.0);
 }
 
 vec4 splines(FourPoints four, vec4 inverse_lengths) {
@@ -185,7 +237,7 @@ float steep_stops(VolumeInfo volume, Pivots pivots, float scalar) {
 // Whether a step between two scalars that ends at x is divided: the scalar may pass a steep piece within it.
 bool is_divided(VolumeInfo volume, Pivots pivots, float a, float b, vec3 x) {
     uint cell = volume.first_cell + cell_id(volume.grid, cell_of(volume.grid, x));
-    float margin = uintBitsToFloat(volume_cell_at(cell).counts & ~uint(CELL_KINDS));
+    float margin = uintBitsToFloat(volume_cell_at(cell).counts & ~uint(CELL_MARKS));
     return steep_stops(volume, pivots, min(a, b) - margin) < steep_stops(volume, pivots, max(a, b) + margin);
 }
 

@@ -35,6 +35,7 @@
 #define SCENE_DEPTHS 0x10000000u // Where half of the light is lost is asked for
 #define SCENE_GLOSSY 0x20000000u // Lights light a surface that scatters by another law than Lambert's, or from which rays go on
 #define SCENE_STEEP 0x40000000u // A transfer function is steep, and steps may be divided
+#define SCENE_SIZES 0x80000000u // A volume has grids by size
 #define LIGHTING_TABLE 1 // Of the specialization constant 1: the background lights what rays hit, and how bright it is decides where rays look for its light
 #define LIGHTING_PATH 2 // Light goes from surface to surface
 #define LIGHTING_SKY 4 // The background lights what rays hit

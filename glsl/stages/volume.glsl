@@ -22,18 +22,21 @@
 #define CELL_ABOVE 2 // VolumeCell.counts: where there is a scalar, it is above the isosurface
 #define CELL_BELOW 3 // VolumeCell.counts: where there is one, it is below
 #define CELL_KINDS 3 // VolumeCell.counts: the bits of these
+#define CELL_FINER 4 // VolumeCell.counts, of a grid by size: finer points may be near
+#define CELL_MARKS 7 // VolumeCell.counts: all bits that are none of a float's
+#define STRIDE_STEPS 8 // Steps of one length that a ray takes at a time, a power of two
 #define MARCH_PARTS 64 // Parts of a step that is divided
 #define BLOCK_PLACES 8 // Places along a ray for which points are measured together, at most
 
 // A field between points ([T] §6).
 struct VolumeInfo { // 112 bytes
-    GridInfo grid;                   //   0 Over the points' bounding box grown by the radius, and up to a cell more.
+    GridInfo grid;                   //   0 Over the points' bounding box grown by the radius, and up to a cell more; that of the largest points where it has grids by size.
     uint first_cell;                 //  32 In the cells of all volumes.
     uint first_stop;                 //  36 In the stops of all volumes.
     uint stop_count;                 //  40 Stops of its transfer function.
     uint kernel;                     //  44 One of VOLUME_*.
-    float square_radius;             //  48 Of a point's reach.
-    float inverse_width;             //  52 1 / 2ρ.
+    float square_radius;             //  48 Of a point's reach; where each has its own, of a mean one, and in a grid by size of the greatest there.
+    float inverse_width;             //  52 1 / 2ρ; 0: each point has its own reach r, and ρ = (r/2)². Then 1/r is its inverse length.
     uint object;                     //  56 Index of the object in the scene.
     uint bounded;                    //  60 1: it counts only inside the object's surface.
     vec3 high;                       //  64 Highest corner of the box, whose lowest is the grid's.
@@ -43,7 +46,9 @@ struct VolumeInfo { // 112 bytes
     uint refracts;                   //  88 1: an isosurface of glass, which rays are inside or outside; of a volume that scatters rays, the slot of the polynomial that stands for it.
     uint shading;                    //  92 What light does in it: one of VOLUME_EMITS and so on.
     uint block;                      //  96 Places of a block, a power of two: so many that no weight is out of the range of floats.
-    uint pad[3];                     // 100 Unused.
+    uint first_size;                 // 100 The first of its grids by size, coarsest first, in the list of volumes.
+    uint size_count;                 // 104 How many of these there are; 0: it has one grid.
+    uint level;                      // 108 log₂ of the length of steps, in shortest steps, where the points of this grid are the smallest around.
 };
 
 // A cell of a volume's grid.
@@ -106,10 +111,10 @@ struct March { // 80 bytes
     float step_extinction;           //  44 Of this step.
     float numerator;                 //  48 Where volumes are lit, numerator of this volume's scalar at this place, so far.
     float denominator;               //  52 Its denominator.
-    uint state;                      //  56 0: not begun, 1: on its way, 2: done, 3: once more, for along.
+    uint state;                      //  56 0: not begun, 1: on its way, 2: done, 3: once more, for along. From bit 2 on, in five bits each: log₂ of the length of steps from the place on, and of the step before it, in shortest steps.
     uint place;                      //  60 End of a step; from bit 24 on, its part, where 0 is the whole step; in bit 31, whether a volume so far divides it.
     uint volume;                     //  64 Volume.
-    uint row;                        //  68 Of cells around the places that are asked for.
+    uint row;                        //  68 Of cells around the places that are asked for; from bit 24 on, which grid by size they are of.
     uint cursor;                     //  72 Points of the row that are done.
     float along;                     //  76 For the channels of volumes: the depth along the viewing axis where half of what is lost is lost, or below 0; of other modes than emission, the scalar that is shown.
 };
@@ -250,7 +255,7 @@ float volume_point_scalar_at(uint at) {
 }
 #endif
 
-#define VOLUME_LENGTHS 84 // 1/h by point, if any volume has particles
+#define VOLUME_LENGTHS 84 // 1/h by point, or one by its reach, if any volume has particles or points with a reach of their own
 #ifdef TEXELS
 layout(binding = VOLUME_LENGTHS) uniform usamplerBuffer inverse_length_texels;
 
@@ -346,7 +351,7 @@ vec4 stop_emission_rest_at(uint at) {
 
 #define MARCHES 86 // By ray
 
-#define MARCH_ENDS 87 // The ends of steps by ray and volume, two each where steps may be divided; of lit ones four floats
+#define MARCH_ENDS 87 // The ends of steps by ray and volume, two each where steps may be divided; of lit ones four floats. With grids by size, after them whether the volume is seen from the stretch of steps
 
 #define MARCH_LIGHTS 88 // By ray, where volumes are lit
 

@@ -200,7 +200,7 @@ pub struct Chosen {
     pub value: Value,
 }
 
-/// A number, or the values at the lower and the upper end of a range.
+/// A number, the values at the lower and the upper end of a range, or a word.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Value {
@@ -208,6 +208,8 @@ pub enum Value {
     Number(f64),
     /// In the attribute's unit.
     Range([f64; 2]),
+    /// One of the key's words.
+    Word(&'static str),
 }
 
 /// How the fits of all points ended.
@@ -392,6 +394,7 @@ impl Chosen {
             value: match chosen.value {
                 Choice::Number(number) => Value::Number(number),
                 Choice::Range(range) => Value::Range(range),
+                Choice::Word(word) => Value::Word(word),
             },
         }
     }

@@ -76,11 +76,15 @@ fn lines([low, high]: [[f64; 3]; 2], axis: usize) -> Vec<Line> {
 }
 
 impl Line {
-    /// Σ σ·step, in steps of a quarter of a point's reach where these are not too many.
+    /// Σ σ·step, in steps of a quarter of a point's reach where these are not too many; where points have reaches of their
+    /// own, in as many as there may be.
     fn depth(&self, volumes: &Volumes, info: &VolumeInfo, [low, high]: [[f64; 3]; 2]) -> f64 {
         let radius = f64::from(info.square_radius).sqrt();
         let (from, to) = (low[self.axis] - radius, high[self.axis] + radius);
-        let samples = ((to - from) / (0.25 * radius)).ceil().clamp(1.0, MOST_SAMPLES);
+        let samples = match info.size_count {
+            0 => ((to - from) / (0.25 * radius)).ceil().clamp(1.0, MOST_SAMPLES),
+            _ => MOST_SAMPLES,
+        };
         let step = (to - from) / samples;
         let mut x = self.at;
         (0..samples as usize)

@@ -20,6 +20,8 @@ pub enum Choice {
     Number(f64),
     /// The values at the lower and the upper end.
     Range([f64; 2]),
+    /// A word.
+    Word(&'static str),
 }
 
 /// `objects.0.volume.radius=0.05`, as `--set` takes it.
@@ -35,6 +37,7 @@ impl fmt::Display for Choice {
         match self {
             Self::Number(number) => write!(f, "{number:?}"),
             Self::Range([low, high]) => write!(f, "[{low:?}, {high:?}]"),
+            Self::Word(word) => write!(f, "\"{word}\""),
         }
     }
 }
@@ -60,6 +63,11 @@ impl Findings {
     /// Notes a number that was chosen.
     pub(crate) fn number(&mut self, object: usize, key: &'static str, value: f64) {
         self.chosen.push(Chosen { object, key, value: Choice::Number(value) });
+    }
+
+    /// Notes a word that was chosen.
+    pub(crate) fn word(&mut self, object: usize, key: &'static str, value: &'static str) {
+        self.chosen.push(Chosen { object, key, value: Choice::Word(value) });
     }
 
     /// Notes a range that was chosen.

@@ -14,53 +14,71 @@ const STEEPER_OF_FEW: usize = 60;
 /// How far the scalar may be from a straight line within a step, of its range.
 const STRAIGHT: f64 = 0.02;
 
-/// The points of a volume.
-pub(crate) fn points_of(volumes: &Volumes, info: &VolumeInfo) -> std::ops::Range<usize> {
-    let at = |cell: u32| volumes.cells[(info.first_cell + cell) as usize].first as usize;
-    at(0)..at(info.grid.cell_count())
+/// Hands out each point of a volume that reaches a place: its index, its weight, what the gradient of that is along the way
+/// to it, and this way.
+pub(crate) fn for_each_near(
+    volumes: &Volumes,
+    info: &VolumeInfo,
+    x: [f64; 3],
+    mut visit: impl FnMut(usize, f64, f64, [f64; 3]),
+) {
+    for of in volumes.grids_of(info) {
+        let grid = &of.grid;
+        let reach = f64::from(of.square_radius).sqrt();
+        let cell = |axis: usize, at: f64| {
+            let cell = (at - f64::from(grid.origin[axis])) * f64::from(grid.inverse_edge);
+            (cell.max(0.0) as u32).min(grid.resolution[axis] - 1)
+        };
+        let [low, high] =
+            [-reach, reach].map(|off| [0, 1, 2].map(|axis| cell(axis, x[axis] + off)));
+        let [nx, ny, _] = grid.resolution;
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                let row = of.first_cell + nx * (y + ny * z);
+                let first = |x: u32| volumes.cells[(row + x) as usize].first as usize;
+                for i in first(low[0])..first(high[0] + 1) {
+                    let position = volumes.points[i].position;
+                    let to = [0, 1, 2].map(|axis| f64::from(position[axis]) - x[axis]);
+                    let square = to.iter().map(|along| along * along).sum::<f64>();
+                    if let Some([weight, slope]) = weight(volumes, info, i, square) {
+                        visit(i, weight, slope, to);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The weight of a point at a place, and its slope towards it, by the square of how far away that is; `None` out of its
+/// reach.
+pub(crate) fn weight(
+    volumes: &Volumes,
+    info: &VolumeInfo,
+    point: usize,
+    square: f64,
+) -> Option<[f64; 2]> {
+    if info.kernel == VOLUME_SPH {
+        let (weight, slope) = spline(square.sqrt(), f64::from(volumes.inverse_lengths[point]));
+        return Some([weight, slope]);
+    }
+    let [width, square_radius] = volumes.width_of(info, point);
+    let weight = (-square * width).exp();
+    (square <= square_radius).then_some([weight, 2.0 * width * weight])
 }
 
 /// The scalar at a place, and its gradient; `None` where no point is in reach (Eq. 14 of docs/method.md, or the sum of
 /// the kernel).
 pub(crate) fn at(volumes: &Volumes, info: &VolumeInfo, x: [f64; 3]) -> Option<(f64, [f64; 3])> {
-    let grid = &info.grid;
-    let square_radius = f64::from(info.square_radius);
-    let reach = square_radius.sqrt();
-    let cell = |axis: usize, at: f64| {
-        let cell = (at - f64::from(grid.origin[axis])) * f64::from(grid.inverse_edge);
-        (cell.max(0.0) as u32).min(grid.resolution[axis] - 1)
-    };
-    let [low, high] = [-reach, reach].map(|off| [0, 1, 2].map(|axis| cell(axis, x[axis] + off)));
-    let [nx, ny, _] = grid.resolution;
     let (mut sum, mut weights, mut pull, mut weights_pull) = (0.0, 0.0, [0.0; 3], [0.0; 3]);
-    for z in low[2]..=high[2] {
-        for y in low[1]..=high[1] {
-            let row = info.first_cell + nx * (y + ny * z);
-            let first = |x: u32| volumes.cells[(row + x) as usize].first as usize;
-            for i in first(low[0])..first(high[0] + 1) {
-                let point = &volumes.points[i];
-                let to = [0, 1, 2].map(|axis| f64::from(point.position[axis]) - x[axis]);
-                let square = to.iter().map(|along| along * along).sum::<f64>();
-                let scalar = f64::from(point.scalar);
-                // The weight, and what its gradient is along `to`.
-                let (weight, slope) = if info.kernel == VOLUME_SPH {
-                    spline(square.sqrt(), f64::from(volumes.inverse_lengths[i]))
-                } else if square <= square_radius {
-                    let width = f64::from(info.inverse_width);
-                    let weight = (-square * width).exp();
-                    (weight, 2.0 * width * weight)
-                } else {
-                    continue;
-                };
-                sum += weight * scalar;
-                weights += weight;
-                for axis in 0..3 {
-                    pull[axis] += slope * scalar * to[axis];
-                    weights_pull[axis] += slope * to[axis];
-                }
-            }
+    for_each_near(volumes, info, x, |i, weight, slope, to| {
+        let scalar = f64::from(volumes.points[i].scalar);
+        sum += weight * scalar;
+        weights += weight;
+        for axis in 0..3 {
+            pull[axis] += slope * scalar * to[axis];
+            weights_pull[axis] += slope * to[axis];
         }
-    }
+    });
     let mean = sum / weights;
     let of_mean = [0, 1, 2].map(|axis| (pull[axis] - mean * weights_pull[axis]) / weights);
     let found = if info.kernel == VOLUME_SHEPARD { (mean, of_mean) } else { (sum, pull) };
@@ -82,7 +100,7 @@ fn f64s(of: [f32; 3]) -> [f64; 3] {
 /// From 0 to what the integral along no ray exceeds: the greatest scalar times the diagonal of the box. A mean is
 /// nowhere greater than the greatest of its points; a sum is taken to be greatest at one of them.
 pub(crate) fn bound_of_integrals(volumes: &Volumes, info: &VolumeInfo) -> [f64; 2] {
-    let range = points_of(volumes, info);
+    let range = volumes.range_of(info);
     let points = volumes.points[range].iter();
     let value = |point: &kernels::layout::VolumePoint| match info.kernel {
         VOLUME_SHEPARD => f64::from(point.scalar),
@@ -102,7 +120,7 @@ pub(crate) fn bound_of_integrals(volumes: &Volumes, info: &VolumeInfo) -> [f64; 
 pub(crate) fn long_step(volumes: &Volumes, info: &VolumeInfo, object: &Object) -> Option<String> {
     let volume = object.volume.as_ref().filter(|_| info.mode != VOLUME_ISOSURFACE)?;
     volume.step?;
-    let range = points_of(volumes, info);
+    let range = volumes.range_of(info);
     let asked = range.len().min(ASKED);
     let places = (0..asked).map(|i| range.start + i * range.len() / asked);
     let places: Vec<usize> = places.collect();
@@ -157,7 +175,7 @@ pub(crate) fn long_step(volumes: &Volumes, info: &VolumeInfo, object: &Object) -
 
 /// Twice the mean smoothing length: what the step of particles is a quarter of.
 fn mean_length(volumes: &Volumes, info: &VolumeInfo) -> f64 {
-    let lengths = volumes.inverse_lengths[points_of(volumes, info)].iter();
+    let lengths = volumes.inverse_lengths[volumes.range_of(info)].iter();
     let there = lengths.filter(|inverse| **inverse > 0.0).map(|inverse| 1.0 / f64::from(*inverse));
     let (sum, count) = there.fold((0.0, 0u32), |(sum, count), h| (sum + h, count + 1));
     2.0 * sum / f64::from(count.max(1))

@@ -6,10 +6,11 @@
 
 use crate::bulk::World;
 use crate::crossings::{Votes, votes};
+use crate::field;
 use crate::shapes::surface_slots;
 use crate::volumes::Volumes;
 use kernels::layout::{
-    LIGHT_POINT, Light, MEDIA_WORDS, VOLUME_ISOSURFACE, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo,
+    LIGHT_POINT, Light, MEDIA_WORDS, VOLUME_ISOSURFACE, VOLUME_SHEPARD, VolumeInfo,
 };
 use points::{Cloud, PointSet, ShapeKind, Shapes};
 use scene::{Scene, SurfaceKind};
@@ -155,14 +156,7 @@ fn above_isosurface(volumes: &Volumes, object: u32, place: [f64; 3]) -> Option<b
         let point = &volumes.points[at];
         let square: f64 =
             (0..3).map(|axis| (f64::from(point.position[axis]) - place[axis]).powi(2)).sum();
-        let weight = if info.kernel == VOLUME_SPH {
-            let q = square.sqrt() * f64::from(volumes.inverse_lengths[at]);
-            0.25 * (2.0 - q).max(0.0).powi(3) - (1.0 - q).max(0.0).powi(3)
-        } else if square <= f64::from(info.square_radius) {
-            (-square * f64::from(info.inverse_width)).exp()
-        } else {
-            0.0
-        };
+        let [weight, _] = field::weight(volumes, info, at, square).unwrap_or_default();
         numerator += weight * f64::from(point.scalar);
         denominator += weight;
     }

@@ -1,12 +1,10 @@
-//! What the nearest neighbours of a set's points say of them: how far apart they are, which lie on the boundary.
+//! What the nearest neighbours of a set's points say of them: which lie on the boundary.
 
 use crate::PlanError;
 use kernels::layout::Point;
 use points::{Cloud, NeighborSearch, ObjectPoints, Watch};
 use rayon::prelude::*;
 
-/// Neighbours that the spacing of a volume's points is measured by.
-const NEIGHBORS: usize = 16;
 /// Neighbours that tell whether a point is on the boundary: of so many at random around a point inside, all
 /// are on one side of a plane through it once in four million times (Wendel 1962).
 const BOUNDARY_NEIGHBORS: usize = 32;
@@ -78,16 +76,6 @@ fn of_each<T: Copy + Send>(
         by_slot.par_extend(lists.par_chunks(k).zip(batch).map_init(Vec::new, of_list));
     })?;
     Ok((cloud, by_slot))
-}
-
-/// The mean distance to the 16th neighbour.
-pub(crate) fn spacing(positions: &[[f64; 3]], watch: &dyn Watch) -> Result<f64, PlanError> {
-    watch.stage("measuring the spacing of a volume", positions.len() as u64);
-    let farthest = |others: &[[f64; 3]]| others.iter().map(|&y| length(y)).fold(0.0, f64::max);
-    let (cloud, by_slot) = of_each(positions, NEIGHBORS, watch, farthest)?;
-    // Added up in the order of the file, whatever the order in memory.
-    let all = cloud.order.iter().map(|&slot| by_slot[slot as usize]);
-    Ok(all.sum::<f64>() / by_slot.len().max(1) as f64)
 }
 
 /// Which points have a plane through them that has all their neighbours on one side.

@@ -31,7 +31,7 @@ pub(crate) fn of_scene(scene: &Scene, volumes: &Volumes, chosen: &[Chosen]) -> V
                 let of = |chosen: &&Chosen| chosen.object == index && chosen.key == key;
                 match chosen.iter().find(of)?.value {
                     Choice::Range(range) => Some(range),
-                    Choice::Number(_) => None,
+                    Choice::Number(_) | Choice::Word(_) => None,
                 }
             })
         };

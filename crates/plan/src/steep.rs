@@ -9,7 +9,7 @@ use crate::Volumes;
 use crate::field;
 use crate::volumes::cell_of;
 use kernels::layout::{
-    CELL_KINDS, CELL_NOTHING, VOLUME_EMISSION, VOLUME_SHEPARD, VolumeInfo, VolumeStop,
+    CELL_MARKS, CELL_NOTHING, VOLUME_EMISSION, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo, VolumeStop,
 };
 use rayon::prelude::*;
 
@@ -37,7 +37,7 @@ pub(crate) fn mark(volumes: &mut Volumes) {
     for at in 0..volumes.infos.len() {
         let info = volumes.infos[at];
         let stops = info.first_stop as usize..(info.first_stop + info.stop_count) as usize;
-        let step = f64::from(volumes.step);
+        let step = step_of_most(volumes, &info);
         let missed = |pair: &[VolumeStop]| step * change(&pair[0], &pair[1]);
         let pieces = volumes.stops[stops.clone()].windows(2);
         if info.mode != VOLUME_EMISSION || !pieces.clone().any(|pair| missed(pair) > VISIBLE) {
@@ -63,7 +63,7 @@ pub(crate) fn mark(volumes: &mut Volumes) {
             for (cell, spread) in cells.zip(spreads).filter(|(cell, _)| cell.counts != CELL_NOTHING)
             {
                 let margin = (along.share * spread).min(f64::from(f32::MAX)) as f32;
-                cell.counts |= margin.to_bits() & !CELL_KINDS;
+                cell.counts |= margin.to_bits() & !CELL_MARKS;
             }
         }
     }
@@ -85,9 +85,39 @@ fn change(from: &VolumeStop, to: &VolumeStop) -> f64 {
         .fold((f64::from(from.extinction) - f64::from(to.extinction)).abs(), f64::max)
 }
 
+/// The length of steps among most points of a volume.
+fn step_of_most(volumes: &Volumes, info: &VolumeInfo) -> f64 {
+    let own = |grid: &&VolumeInfo| volumes.range_of(&VolumeInfo { size_count: 0, ..**grid }).len();
+    let most = volumes.grids_of(info).iter().max_by_key(own).unwrap_or(info);
+    step_in(volumes, most)
+}
+
+/// The length of steps where the points of a grid are the smallest around.
+fn step_in(volumes: &Volumes, grid: &VolumeInfo) -> f64 {
+    f64::from(volumes.step) * f64::from(grid.level).exp2()
+}
+
+/// How long steps are around a point, and how far it reaches.
+fn lengths_at(volumes: &Volumes, info: &VolumeInfo, point: usize) -> [f64; 2] {
+    let holds = |grid: &&VolumeInfo| {
+        volumes.range_of(&VolumeInfo { size_count: 0, ..**grid }).contains(&point)
+    };
+    let own = volumes.grids_of(info).iter().find(holds).unwrap_or(info);
+    let reach = match info.size_count {
+        0 => f64::from(info.square_radius).sqrt(),
+        _ if info.kernel == VOLUME_SPH => 2.0 / f64::from(volumes.inverse_lengths[point]),
+        _ => 1.0 / f64::from(volumes.inverse_lengths[point]),
+    };
+    [step_in(volumes, own), reach]
+}
+
 /// How much the scalars vary that points have in and around each cell: their standard deviation where a scalar is a
-/// mean, the root of the sum of their squares where it is a sum.
+/// mean, the root of the sum of their squares where it is a sum. With grids by size, 1 in all cells: how far scalars are
+/// off a straight line is one number for all of them.
 fn spreads(volumes: &Volumes, info: &VolumeInfo) -> Vec<f64> {
+    if info.size_count > 0 {
+        return vec![1.0; info.grid.cell_count() as usize];
+    }
     let [nx, ny, nz] = info.grid.resolution.map(|n| n as usize);
     let first = |cell: usize| volumes.cells[info.first_cell as usize + cell].first as usize;
     let is_mean = info.kernel == VOLUME_SHEPARD;
@@ -128,12 +158,12 @@ fn spreads(volumes: &Volumes, info: &VolumeInfo) -> Vec<f64> {
 /// Follows the scalar along steps in all directions around points in all parts of the volume; `None` where there are no
 /// such steps with points in reach all along.
 fn measure(volumes: &Volumes, info: &VolumeInfo, spreads: &[f64]) -> Option<Along> {
-    let points = field::points_of(volumes, info);
-    let (step, reach) = (f64::from(volumes.step), f64::from(info.square_radius).sqrt());
+    let points = volumes.range_of(info);
     let found: Vec<[f64; 2]> = (0..STEPS.min(points.len()))
         .into_par_iter()
         .filter_map(|i| {
-            let point = &volumes.points[points.start + i * points.len() / STEPS.min(points.len())];
+            let at = points.start + i * points.len() / STEPS.min(points.len());
+            let (point, [step, reach]) = (&volumes.points[at], lengths_at(volumes, info, at));
             let off = direction(i * 1_237 % STEPS);
             let part = 0.5 * reach * (i as f64 * 0.754_877_666).fract();
             let start = [0, 1, 2].map(|axis| f64::from(point.position[axis]) + part * off[axis]);

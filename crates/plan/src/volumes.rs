@@ -2,9 +2,13 @@
 //! (\[T\] §6; docs/method.md, section 7).
 
 mod build;
+mod cells;
 mod particles;
+mod reach;
+mod sizes;
+mod thinned;
 
-pub(crate) use build::cell_of;
+pub(crate) use cells::cell_of;
 
 use crate::PlanError;
 use crate::bulk::Bulk;
@@ -13,19 +17,22 @@ use crate::chosen::Findings;
 use crate::colors::attribute_values;
 use crate::field;
 use crate::missing::{Lacking, Missing};
-use crate::neighborhoods::{length, open_points, spacing};
+use crate::neighborhoods::{length, open_points};
 use crate::steep;
 use crate::transfer::{own_range, stops_of};
 use bytemuck::Zeroable;
 use kernels::layout::{
-    BLOCK_PLACES, MATERIAL_CLOUD, NONE, ObjectInfo, Polynomial, SCENE_GLOWS, SCENE_MANY_VOLUMES,
-    SCENE_PARTICLES, SCENE_STEEP, SCENE_WEIGHTS, SCENE_WHOLES, VOLUME_AVERAGE, VOLUME_EMISSION,
+    MATERIAL_CLOUD, NONE, ObjectInfo, Polynomial, SCENE_GLOWS, SCENE_MANY_VOLUMES, SCENE_PARTICLES,
+    SCENE_SIZES, SCENE_STEEP, SCENE_WEIGHTS, SCENE_WHOLES, VOLUME_AVERAGE, VOLUME_EMISSION,
     VOLUME_EMITS, VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_LIGHTS, VOLUME_MAXIMUM,
     VOLUME_SHEPARD, VOLUME_SPH, VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
 };
 use particles::{Particle, Sph};
-use points::{Cloud, PointSet, Watch, bounds_of};
-use scene::{Boundary, Integrator, Object, Scene, Transfer, VolumeKernel, VolumeMode};
+use points::{Cloud, Dimension, PointSet, Watch, bounds_of};
+use reach::{Reach, Spacings};
+use scene::{
+    Boundary, Integrator, Object, Scene, Transfer, Volume, VolumeKernel, VolumeMode, VolumeRadius,
+};
 use std::sync::Arc;
 
 /// Samples that a ray may take.
@@ -40,11 +47,14 @@ const MOST_CELLS: f64 = 160.0;
 pub struct Volumes {
     /// In the order of their objects.
     pub infos: Vec<VolumeInfo>,
-    /// Cells of each volume, with one behind the last.
+    /// Of volumes whose points reach unevenly, the grids by size, coarsest first: grid, cells, the greatest reach of their
+    /// own points, and level.
+    pub sizes: Vec<VolumeInfo>,
+    /// Cells of each grid, with one behind the last.
     pub cells: Vec<VolumeCell>,
-    /// Points of each volume by cell, in the order of the file within one.
+    /// Points of each grid by cell, in the order of the file within one.
     pub points: Vec<VolumePoint>,
-    /// 1/h of each point, 0 where it has none; one number where no volume has particles.
+    /// 1/h of each particle, 1/r of each point with a reach r of its own, 0 of others; one number where no volume has such.
     pub inverse_lengths: Vec<f32>,
     /// Of all transfer functions.
     pub stops: Vec<VolumeStop>,
@@ -94,7 +104,8 @@ pub(crate) fn plan_volumes(
     (watch, found): (&dyn Watch, &mut Findings),
 ) -> Result<Volumes, PlanError> {
     let origin = cloud.origin;
-    let mut volumes = Volumes { step: f32::MAX, ..Volumes::default() };
+    let mut volumes = Volumes::default();
+    let mut steps = Vec::new();
     for (index, object) in scene.objects.iter().enumerate() {
         let Some(volume) = &object.volume else { continue };
         let (set, positions) = &bulk.particles[index];
@@ -126,35 +137,36 @@ pub(crate) fn plan_volumes(
                 of: particles.len() as u64,
             });
         }
-        let radius = match (&volume.kernel, volume.radius) {
-            (VolumeKernel::Sph { .. }, _) => {
-                2.0 * particles
-                    .iter()
-                    .map(|p| p.length)
-                    .filter(|h| h.is_finite())
-                    .fold(0.0, f64::max)
+        let there = || particles.iter().enumerate().filter(|(_, of)| counts(of)).map(|(i, _)| i);
+        let reach = match &volume.kernel {
+            VolumeKernel::Sph { .. } => {
+                let lengths = particles.iter().map(|p| p.length).filter(|h| h.is_finite());
+                Reach::Even(2.0 * lengths.fold(0.0, f64::max))
             }
-            (_, Some(radius)) => radius,
-            (_, None) if lacking == 0 => spacing(&bulk.world[index], watch)?,
-            (_, None) => {
-                let both = positions.iter().zip(&particles);
-                let there = both.filter(|(_, of)| counts(of)).map(|(&p, _)| p);
-                spacing(&there.collect::<Vec<_>>(), watch)?
+            _ if lacking == 0 => reach_of(volume, &bulk.world[index], set, watch)?,
+            _ => {
+                let world: Vec<[f64; 3]> = there().map(|i| positions[i]).collect();
+                reach_of(volume, &world, set, watch)?
             }
         };
         watch.stage("sorting the points of a volume", positions.len() as u64);
         // Points that all lie in one place have no spacing, and any reach shows them alike.
-        let radius = if radius > 0.0 { radius } else { 1.0 };
-        let points: Vec<(VolumePoint, f32)> = positions
-            .iter()
-            .zip(&particles)
-            .filter(|(_, of)| counts(of))
-            .map(|(p, of)| {
-                let position = [0, 1, 2].map(|axis| (p[axis] - origin[axis]) as f32);
-                let inverse_length = (1.0 / of.length) as f32;
-                (VolumePoint { position, scalar: of.scalar as f32 }, inverse_length)
+        let seen = |radius: f64| if radius > 0.0 { radius } else { 1.0 };
+        let local = |i: usize| [0, 1, 2].map(|axis| (positions[i][axis] - origin[axis]) as f32);
+        let inverse = |at: usize, i: usize| match &reach {
+            Reach::Even(_) => 1.0 / particles[i].length,
+            Reach::Own(reaches) => 1.0 / seen(reaches[at]),
+        };
+        let points: Vec<(VolumePoint, f32)> = (there().enumerate())
+            .map(|(at, i)| {
+                let point = VolumePoint { position: local(i), scalar: particles[i].scalar as f32 };
+                (point, inverse(at, i) as f32)
             })
             .collect();
+        let radius = match &reach {
+            Reach::Even(radius) => seen(*radius),
+            Reach::Own(_) => 1.0,
+        };
         let own = own_range(&scalars, volume.scale);
         if own.is_none()
             && volume.mode != VolumeMode::Integral
@@ -184,17 +196,23 @@ pub(crate) fn plan_volumes(
             Some(factor)
         });
         let is_sph = matches!(volume.kernel, VolumeKernel::Sph { .. });
+        let is_own = matches!(reach, Reach::Own(_));
+        if is_own && volume.radius == VolumeRadius::Auto {
+            found.word(index, "volume.radius", "adaptive");
+        }
         for (key, length, is_given) in [
-            ("volume.radius", radius, is_sph || volume.radius.is_some()),
-            ("volume.smoothing", lengths.smoothing, is_sph || volume.smoothing.is_some()),
-            ("volume.step", lengths.step, volume.step.is_some()),
+            ("volume.radius", radius, is_sph || is_own || volume.radius != VolumeRadius::Auto),
+            ("volume.smoothing", lengths.smoothing, is_sph || is_own || volume.smoothing.is_some()),
+            ("volume.step", lengths.step, !lengths.of_sizes.is_empty() || volume.step.is_some()),
         ] {
             if !is_given {
                 found.number(index, key, length);
             }
         }
+        steps.push(lengths);
     }
-    if volumes.infos.iter().all(|info| info.kernel != VOLUME_SPH) {
+    volumes.set_levels(&steps);
+    if volumes.infos.iter().all(|info| info.kernel != VOLUME_SPH && info.size_count == 0) {
         volumes.inverse_lengths = vec![0.0];
     }
     for (info, object) in
@@ -234,8 +252,8 @@ pub(crate) fn plan_volumes(
     if let Some(info) = volumes.infos.iter().find(refracts) {
         return Err(PlanError::OpenIsosurface { name: name(info) });
     }
-    for info in &mut volumes.infos {
-        info.block = block_of(info, volumes.step);
+    for at in 0..volumes.infos.len() {
+        volumes.infos[at].block = volumes.block_of(&volumes.infos[at]);
     }
     steep::mark(&mut volumes);
     for (slot, info) in (cloud.points.len() as u32..)
@@ -253,17 +271,30 @@ pub(crate) fn plan_volumes(
     Ok(volumes)
 }
 
-/// Places of a block: as many as leave all weights, from the first place on, in the range of floats with a few decades to
-/// spare, and square distances with their digits.
-fn block_of(info: &VolumeInfo, step: f32) -> u32 {
-    let reach = f64::from(info.square_radius).sqrt();
-    let fits = |places: &u32| {
-        let way = f64::from(places - 1) * f64::from(step);
-        let powers =
-            f64::from(info.inverse_width) * (reach + way).powi(2) * std::f64::consts::LOG2_E;
-        way <= 4.0 * reach && (powers <= MOST_POWERS || info.kernel == VOLUME_SPH)
-    };
-    [BLOCK_PLACES, BLOCK_PLACES / 2, BLOCK_PLACES / 4].into_iter().find(fits).unwrap_or(1)
+/// How far the points of a volume reach.
+fn reach_of(
+    volume: &Volume,
+    positions: &[[f64; 3]],
+    set: &PointSet,
+    watch: &dyn Watch,
+) -> Result<Reach, PlanError> {
+    if let VolumeRadius::Length(radius) = volume.radius {
+        return Ok(Reach::Even(radius));
+    }
+    let spacings = Spacings::of(positions, watch)?;
+    let is_auto = volume.radius == VolumeRadius::Auto;
+    if is_auto && volume.smoothing.is_some() {
+        return Ok(Reach::Even(spacings.mean()));
+    }
+    let mut own = spacings.own(positions.len(), || Dimension::of(set).is_volume());
+    if is_auto && !Spacings::is_uneven(&own) {
+        return Ok(Reach::Even(spacings.mean()));
+    }
+    // Steps of a quarter of the reach, as many as floats count.
+    let [low, high] = bounds_of([positions]).unwrap_or_default();
+    let least = 4.0 * length([0, 1, 2].map(|axis| high[axis] - low[axis])) / MOST_SAMPLES * 1.5;
+    own.iter_mut().for_each(|reach| *reach = reach.max(least));
+    Ok(Reach::Own(own))
 }
 
 /// Whether one scalar stands for the whole way of a ray.
@@ -282,9 +313,11 @@ fn has_emission(stop: &VolumeStop) -> bool {
 
 /// Lengths of a volume as they are, given or chosen.
 struct Lengths {
-    /// ρ, scene units squared.
+    /// ρ, scene units squared; the mean one of points with reaches of their own.
     smoothing: f64,
     step: f64,
+    /// Of steps among the points of each of its grids by size.
+    of_sizes: Vec<f32>,
 }
 
 impl Volumes {
@@ -352,10 +385,10 @@ impl Volumes {
         self.infos.iter().any(|info| steep::is_steep(self, info))
     }
 
-    /// How many ends of steps a ray keeps of each volume.
+    /// How many ends of steps a ray keeps of each volume, and one number as large of the stretch that they are in.
     #[must_use]
     pub fn ends_kept(&self) -> u64 {
-        if self.any_steep() { 2 } else { 1 }
+        1 + u64::from(self.any_steep()) + u64::from(!self.sizes.is_empty())
     }
 
     /// `SCENE_*`: what kernels of these volumes have to do.
@@ -368,6 +401,7 @@ impl Volumes {
             (SCENE_WHOLES, self.is_whole()),
             (SCENE_GLOWS, self.infos.iter().any(glows)),
             (SCENE_STEEP, self.any_steep()),
+            (SCENE_SIZES, !self.sizes.is_empty()),
         ]
         .into_iter()
         .fold(0, |bits, (bit, is_set)| if is_set { bits | bit } else { bits })
@@ -393,11 +427,7 @@ impl Volumes {
 
     /// Which points are whose: of each volume its object and the range of its points.
     pub fn point_ranges(&self) -> impl Iterator<Item = (&VolumeInfo, std::ops::Range<usize>)> {
-        self.infos.iter().map(|info| {
-            let first = self.cells[info.first_cell as usize].first as usize;
-            let last = info.first_cell as usize + info.grid.cell_count() as usize;
-            (info, first..self.cells[last].first as usize)
-        })
+        self.infos.iter().map(|info| (info, self.range_of(info)))
     }
 
     /// Polynomials without a surface, at the slots of the isosurfaces, and after them of the volumes that scatter rays: they
@@ -421,6 +451,7 @@ impl Volumes {
     #[must_use]
     pub fn bytes(&self) -> u64 {
         (size_of_val(self.infos.as_slice())
+            + size_of_val(self.sizes.as_slice())
             + size_of_val(self.cells.as_slice())
             + size_of_val(self.points.as_slice())
             + size_of_val(self.inverse_lengths.as_slice())

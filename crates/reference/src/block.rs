@@ -3,7 +3,7 @@
 
 use crate::grid::Grid;
 use crate::real::{Real, V3};
-use crate::volume::spline;
+use crate::volume::{grids_at, has_own_reaches, spline};
 use kernels::layout::{BLOCK_PLACES, VOLUME_SHEPARD, VOLUME_SPH, VOLUME_SUM, VolumeInfo};
 use plan::Volumes;
 
@@ -28,6 +28,8 @@ pub(crate) struct Block<R> {
     pub(crate) step: R,
     /// Those that are asked for.
     pub(crate) count: u32,
+    /// Of the steps there.
+    pub(crate) level: u32,
 }
 
 /// The scalars at the places; `None` where no point is in reach.
@@ -68,13 +70,23 @@ fn weights<R: Real>(
     let mut square = y.dot(y);
     let mut more = s * s - (R::of(2.0) * s) * along;
     let bend = R::of(2.0) * (s * s);
-    let width: R = width(volume);
+    let inverse_length = R::of_f32(volumes.inverse_lengths.get(i).copied().unwrap_or(0.0));
+    let own = has_own_reaches(volume);
+    let inverse_square = inverse_length * inverse_length;
+    let width: R = if own {
+        (R::of(2.0) * inverse_square) * -R::of(std::f64::consts::LOG2_E)
+    } else {
+        width(volume)
+    };
+    let further = if own { width * (s * s) } else { zero };
+    let fade = (R::of(2.0) * further).max(least).power_of_two();
     let power = width * square;
     let mut weight =
         if power < R::of_f32(LEAST_WEIGHT) { zero } else { power.max(least).power_of_two() };
-    let ratio = ((R::of(-2.0) * width * s) * along).max(least).min(-least).power_of_two();
-    let square_radius = R::of_f32(volume.square_radius);
-    let inverse_length = R::of_f32(volumes.inverse_lengths.get(i).copied().unwrap_or(0.0));
+    let powers = (R::of(-2.0) * width * s) * along + further;
+    let mut ratio = powers.max(least).min(-least).power_of_two();
+    let square_radius =
+        if own { R::of(1.0) / inverse_square } else { R::of_f32(volume.square_radius) };
     std::array::from_fn(|_| {
         let here = if volume.kernel == VOLUME_SPH {
             spline(square.max(zero).sqrt() * inverse_length)
@@ -84,6 +96,9 @@ fn weights<R: Real>(
             zero
         };
         weight = weight * ratio;
+        if own {
+            ratio = ratio * fade;
+        }
         square = square + more;
         more = more + bend;
         here
@@ -97,36 +112,37 @@ fn width<R: Real>(volume: &VolumeInfo) -> R {
 
 /// What [`weights`] leaves out at a place.
 fn place_factor<R: Real>(volume: &VolumeInfo, step: R, k: usize) -> R {
-    if volume.kernel != VOLUME_SUM {
+    if volume.kernel != VOLUME_SUM || has_own_reaches(volume) {
         return R::of(1.0);
     }
     let away = R::of_u32(k as u32) * step;
     (width::<R>(volume) * (away * away)).max(R::of(LEAST_POWER)).power_of_two()
 }
 
-/// Hands out the points of all cells that the box around the places meets, in the order of the cells and in each in that of
-/// the file. The kernel leaves out some that are in reach of no place.
+/// Hands out the points of all cells that the box around the places meets, in the order of the grids by size, of their cells
+/// and in each in that of the file. The kernel leaves out some that are in reach of no place.
 fn for_each_near<R: Real>(
     volume: &VolumeInfo,
     volumes: &Volumes,
     block: &Block<R>,
     mut visit: impl FnMut(usize),
 ) {
-    let grid = Grid::<R>::from(&volume.grid);
-    let margin = V3::splat(
-        R::of_f32(volume.square_radius).sqrt() + R::of(MARGIN) * R::of_f32(volume.grid.edge),
-    );
-    let to = R::of_u32(block.count - 1) * block.step;
-    let (a, b) = (block.first, block.first + block.direction.times(to));
-    let (low, high) = (a.zip(b, R::min) - margin, a.zip(b, R::max) + margin);
-    let [low, high] = [grid.cell_of(low), grid.cell_of(high)];
-    let cell =
-        |at: [u32; 3]| &volumes.cells[volume.first_cell as usize + grid.cell_id(at) as usize..];
-    for z in low[2]..=high[2] {
-        for y in low[1]..=high[1] {
-            let row = cell([low[0], y, z]);
-            let end = row[(high[0] - low[0]) as usize + 1].first;
-            (row[0].first as usize..end as usize).for_each(&mut visit);
+    for of in grids_at(volume, volumes, block.level) {
+        let grid = Grid::<R>::from(&of.grid);
+        let margin =
+            V3::splat(R::of_f32(of.square_radius).sqrt() + R::of(MARGIN) * R::of_f32(of.grid.edge));
+        let to = R::of_u32(block.count - 1) * block.step;
+        let (a, b) = (block.first, block.first + block.direction.times(to));
+        let (low, high) = (a.zip(b, R::min) - margin, a.zip(b, R::max) + margin);
+        let [low, high] = [grid.cell_of(low), grid.cell_of(high)];
+        let cell =
+            |at: [u32; 3]| &volumes.cells[of.first_cell as usize + grid.cell_id(at) as usize..];
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                let row = cell([low[0], y, z]);
+                let end = row[(high[0] - low[0]) as usize + 1].first;
+                (row[0].first as usize..end as usize).for_each(&mut visit);
+            }
         }
     }
 }
@@ -164,7 +180,7 @@ mod tests {
             .collect();
         let volumes = Volumes { points, ..Volumes::default() };
         let direction = V3([0.48f32, 0.6, 0.64]);
-        let block = Block { first: V3([0.0f32; 3]), direction, step, count: places };
+        let block = Block { first: V3([0.0f32; 3]), direction, step, count: places, level: 0 };
         let (mut worst, mut flips, mut counted) = (0.0f64, 0, 0);
         for (i, point) in volumes.points.iter().enumerate() {
             let weights = weights(&volume, &volumes, &block, i);

@@ -7,8 +7,9 @@ use crate::camera_rays::Ray;
 use crate::grid::within_box;
 use crate::media::Media;
 use crate::real::{Real, V3};
+use crate::steps::{begins_stretch, longest_at};
 use crate::surface_hit::Hit;
-use crate::volume::{MOST_SAMPLES, Sums};
+use crate::volume::{MOST_SAMPLES, Sums, look_by_size};
 use kernels::layout::{VOLUME_ISOSURFACE, VOLUME_SHEPARD, VolumeInfo};
 use plan::Volumes;
 
@@ -44,8 +45,9 @@ impl<R: Real> Search<'_, R> {
         self.ray.origin + self.ray.direction.times(t)
     }
 
-    fn sample(&self, t: R) -> Sample<R> {
-        let sums = Sums::at(self.volume, self.volumes, self.place(t), None);
+    /// At a place, where steps are of a level.
+    fn sample(&self, t: R, level: u32) -> Sample<R> {
+        let sums = Sums::at(self.volume, self.volumes, (self.place(t), level), None);
         let exact = sums.scalar(self.volume) - R::of_f32(self.volume.iso);
         let value = if exact == R::of(0.0) { R::of_f32(ON_IT) } else { exact };
         let known = self.volume.kernel != VOLUME_SHEPARD || sums.reached();
@@ -67,13 +69,21 @@ impl<R: Real> Search<'_, R> {
         let steps = (-(R::of(0.5) - (leave - enter) / step).floor()).max(zero);
         let samples = steps.min(R::of(MOST_SAMPLES)).to_u32() + 1;
         let mut before = Sample { t: enter, value: zero, side: start };
-        for place in 0..samples {
-            let t = (enter + (R::of_u32(place) + R::of(0.5)) * step).min(leave);
-            let here = self.sample(t);
+        let (mut place, mut level) = (0, 0);
+        while place < samples {
+            if !self.volumes.sizes.is_empty() && begins_stretch(level, place) {
+                let x = self.place(enter + R::of_u32(place) * step);
+                level = look_by_size(self.volume, self.volumes, x, 0).level.min(longest_at(place));
+            }
+            let half = R::of(0.5) * R::of_u32(1 << level);
+            let t = (enter + (R::of_u32(place) + half) * step).min(leave);
+            let here = self.sample(t, level);
             match (before.side, here.side) {
                 (Some(a), Some(b)) if a != b => return Some([before, here]),
                 _ => before = here,
             }
+            let is_last = !self.volumes.sizes.is_empty() && t >= leave;
+            place = if is_last { samples } else { place + (1 << level) };
         }
         None
     }
@@ -83,7 +93,7 @@ impl<R: Real> Search<'_, R> {
         // Of an end that stays where it is for two turns, half the value counts (Illinois).
         let mut moved_low = None;
         for _ in 0..TURNS {
-            let here = self.sample(between(&low, &high));
+            let here = self.sample(between(&low, &high), 0);
             let before = here.side.is_none() || here.side == low.side;
             let share = R::of(if moved_low == Some(before) { 0.5 } else { 1.0 });
             if before {
@@ -100,7 +110,7 @@ impl<R: Real> Search<'_, R> {
 
     fn hit(&self, t: R) -> Hit<R> {
         let (x, d) = (self.place(t), self.ray.direction);
-        let gradient = Sums::at(self.volume, self.volumes, x, None).gradient(self.volume);
+        let gradient = Sums::at(self.volume, self.volumes, (x, 0), None).gradient(self.volume);
         let square = gradient.dot(gradient);
         let normal = if square > R::of(0.0) { gradient.over(square.sqrt()) } else { d };
         let normal = if normal.dot(d) > R::of(0.0) { -normal } else { normal };

@@ -44,6 +44,7 @@ pub mod sampler;
 
 pub mod shape;
 mod sky;
+mod steps;
 pub mod surface_hit;
 mod to_light;
 pub mod volume;

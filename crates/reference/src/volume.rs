@@ -5,8 +5,8 @@ use crate::light::sample_light;
 use crate::material::cloud::phase;
 use crate::real::{Real, V3};
 use kernels::layout::{
-    CELL_KINDS, CELL_NOTHING, Light, VOLUME_GRADIENT, VOLUME_LIGHTS, VOLUME_SHEPARD, VOLUME_SPH,
-    VolumeInfo, VolumeStop,
+    CELL_FINER, CELL_KINDS, CELL_LOOK, CELL_MARKS, CELL_NOTHING, Light, STRIDE_STEPS,
+    VOLUME_GRADIENT, VOLUME_LIGHTS, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo, VolumeStop,
 };
 use plan::Volumes;
 use std::f64::consts::FRAC_1_PI;
@@ -94,7 +94,7 @@ pub(crate) fn is_divided<R: Real>(
 ) -> bool {
     let grid = Grid::<R>::from(&volume.grid);
     let cell = volumes.cells[(volume.first_cell + grid.cell_id(grid.cell_of(x))) as usize];
-    let margin = R::of_f32(f32::from_bits(cell.counts & !CELL_KINDS));
+    let margin = R::of_f32(f32::from_bits(cell.counts & !CELL_MARKS));
     let stops = stops_of(volume, volumes);
     steep_stops(stops, a.min(b) - margin) < steep_stops(stops, a.max(b) + margin)
 }
@@ -161,11 +161,11 @@ pub struct Sums<R> {
 }
 
 impl<R: Real> Sums<R> {
-    /// Over all points in reach of x; visibility too where there is lighting.
+    /// Over all points in reach of a place, where steps are of a level; visibility too where there is lighting.
     pub fn at(
         volume: &VolumeInfo,
         volumes: &Volumes,
-        x: V3<R>,
+        at: (V3<R>, u32),
         lighting: Option<Lighting<'_, R>>,
     ) -> Self {
         let zero = R::of(0.0);
@@ -177,7 +177,7 @@ impl<R: Real> Sums<R> {
             weights_pull: none,
             visible: [zero; VOLUME_LIGHTS as usize],
         };
-        for_each_near(volume, volumes, x, |i, weight, pull, y| {
+        for_each_near(volume, volumes, at, |i, weight, pull, y| {
             let scalar = R::of_f32(volumes.points[i].scalar);
             sums.numerator = sums.numerator + weight * scalar;
             sums.denominator = sums.denominator + weight;
@@ -229,7 +229,8 @@ impl<R: Real> Sums<R> {
         let gradient = self.gradient(volume);
         let square = gradient.dot(gradient);
         let reach = R::of_f32(volume.square_radius);
-        let scale = if volume.kernel == VOLUME_SPH { R::of(1.0) / reach } else { reach };
+        let per_length = volume.kernel == VOLUME_SPH || has_own_reaches(volume);
+        let scale = if per_length { R::of(1.0) / reach } else { reach };
         let most = (self.numerator * self.numerator) * scale;
         let flattest = R::of_f32(FLATTEST);
         let steep = volume.shading == VOLUME_GRADIENT && square > (flattest * flattest) * most;
@@ -251,7 +252,57 @@ impl<R: Real> Sums<R> {
     }
 }
 
-/// What may be seen from x's cell, one of `CELL_*`; `None` out of the grid.
+/// Whether each point has a reach of its own.
+pub(crate) fn has_own_reaches(volume: &VolumeInfo) -> bool {
+    volume.inverse_width == 0.0
+}
+
+/// The grids with points that may be in reach where steps are of a level: all but those of shorter steps.
+pub(crate) fn grids_at<'a>(
+    volume: &'a VolumeInfo,
+    volumes: &'a Volumes,
+    level: u32,
+) -> &'a [VolumeInfo] {
+    let all = volumes.grids_of(volume);
+    &all[..all.partition_point(|of| of.level >= level).max(1)]
+}
+
+/// What a volume's grids say of a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Look {
+    /// One of `CELL_*`, of all places of a stretch of steps from there.
+    pub(crate) kind: u32,
+    /// Of steps among the smallest points around.
+    pub(crate) level: u32,
+}
+
+/// Where smaller points may be near, the finer grid knows more. The marks of a grid hold for a stretch of its steps; where the
+/// step before the place is longer than that, it knows only of levels.
+pub(crate) fn look_by_size<R: Real>(
+    volume: &VolumeInfo,
+    volumes: &Volumes,
+    x: V3<R>,
+    before: u32,
+) -> Look {
+    // Out of one grid, what is seen is not known.
+    let nothing = if volume.size_count > 0 { CELL_NOTHING } else { CELL_LOOK };
+    let mut look = Look { kind: nothing, level: volume.level };
+    let mut holds = true;
+    for (size, of) in volumes.grids_of(volume).iter().enumerate() {
+        let Some(cell) = cell_at(of, volumes, x) else { break };
+        holds &= size == 0 || of.level + STRIDE_STEPS.ilog2() >= before;
+        if holds {
+            look.kind = cell & CELL_KINDS;
+        }
+        look.level = of.level;
+        if cell & CELL_FINER == 0 {
+            break;
+        }
+    }
+    look
+}
+
+/// The marks of x's cell; `None` out of the grid.
 pub(crate) fn cell_at<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>) -> Option<u32> {
     let grid = Grid::<R>::from(&volume.grid);
     let off = (x - grid.origin).times(grid.inverse_edge);
@@ -263,36 +314,44 @@ pub(crate) fn cell_at<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>)
 
 /// Whether anything may be seen from x.
 pub(crate) fn may_be_seen<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>) -> bool {
-    cell_at(volume, volumes, x).is_some_and(|counts| counts != CELL_NOTHING)
+    cell_at(volume, volumes, x).is_some_and(|counts| counts & CELL_KINDS != CELL_NOTHING)
 }
 
-/// Hands out each point near x: its place, its weight, its weight's gradient along y = p − x, and y.
+/// Hands out each point near x, where steps are of a level: its place, its weight, its weight's gradient along y = p − x, and y.
 fn for_each_near<R: Real>(
     volume: &VolumeInfo,
     volumes: &Volumes,
-    x: V3<R>,
+    (x, level): (V3<R>, u32),
     mut visit: impl FnMut(usize, R, R, V3<R>),
 ) {
-    let grid = Grid::<R>::from(&volume.grid);
-    let cell =
-        |at: [u32; 3]| &volumes.cells[volume.first_cell as usize + grid.cell_id(at) as usize..];
-    let square_radius = R::of_f32(volume.square_radius);
-    let inverse_width = R::of_f32(volume.inverse_width);
-    let [low, high] = grid.cells_around(&Ball::exact(x, square_radius.sqrt()));
-    for z in low[2]..=high[2] {
-        for y in low[1]..=high[1] {
-            let row = cell([low[0], y, z]);
-            let end = row[(high[0] - low[0]) as usize + 1].first;
-            for i in row[0].first as usize..end as usize {
-                let to = V3::of_f32(volumes.points[i].position) - x;
-                let square = to.dot(to);
-                if volume.kernel == VOLUME_SPH {
-                    let inverse_length = R::of_f32(volumes.inverse_lengths[i]);
-                    let q = square.sqrt() * inverse_length;
-                    visit(i, spline(q), spline_pull(q, inverse_length), to);
-                } else if square <= square_radius {
-                    let weight = (-square * inverse_width).exp_negative();
-                    visit(i, weight, weight, to);
+    let own = has_own_reaches(volume);
+    for of in grids_at(volume, volumes, level) {
+        let grid = Grid::<R>::from(&of.grid);
+        let cell =
+            |at: [u32; 3]| &volumes.cells[of.first_cell as usize + grid.cell_id(at) as usize..];
+        let [low, high] = grid.cells_around(&Ball::exact(x, R::of_f32(of.square_radius).sqrt()));
+        for z in low[2]..=high[2] {
+            for y in low[1]..=high[1] {
+                let row = cell([low[0], y, z]);
+                let end = row[(high[0] - low[0]) as usize + 1].first;
+                for i in row[0].first as usize..end as usize {
+                    let to = V3::of_f32(volumes.points[i].position) - x;
+                    let square = to.dot(to);
+                    let inverse_length =
+                        R::of_f32(volumes.inverse_lengths.get(i).copied().unwrap_or(0.0));
+                    if volume.kernel == VOLUME_SPH {
+                        let q = square.sqrt() * inverse_length;
+                        visit(i, spline(q), spline_pull(q, inverse_length), to);
+                    } else if own {
+                        let inverse_square = inverse_length * inverse_length;
+                        if square <= R::of(1.0) / inverse_square {
+                            let weight = (-square * (R::of(2.0) * inverse_square)).exp_negative();
+                            visit(i, weight, weight * inverse_square, to);
+                        }
+                    } else if square <= R::of_f32(volume.square_radius) {
+                        let weight = (-square * R::of_f32(volume.inverse_width)).exp_negative();
+                        visit(i, weight, weight, to);
+                    }
                 }
             }
         }
@@ -305,7 +364,7 @@ pub fn scalar_at<R: Real>(volume: &VolumeInfo, volumes: &Volumes, x: V3<R>) -> O
         return None;
     }
     let (mut numerator, mut denominator) = (R::of(0.0), R::of(0.0));
-    for_each_near(volume, volumes, x, |i, weight, _, _| {
+    for_each_near(volume, volumes, (x, 0), |i, weight, _, _| {
         numerator = numerator + weight * R::of_f32(volumes.points[i].scalar);
         denominator = denominator + weight;
     });

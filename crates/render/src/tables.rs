@@ -262,7 +262,7 @@ impl VolumeBuffers {
         let ends = of("ends of steps", true, rays * count, if lit { 16 } else { 4 })?;
         let visible = of("visible lights", lit, points, 4 * VOLUME_LIGHTS as usize)?;
         let table = table
-            .buffer(VOLUMES, &Buffer::from_slice(device, "volumes", &volumes.infos)?)
+            .buffer(VOLUMES, &Buffer::from_slice(device, "volumes", &volumes.with_sizes())?)
             .buffer(VOLUME_CELLS, &Buffer::from_slice(device, "volume cells", &volumes.cells)?)
             .buffer(VOLUME_POINTS, &Buffer::from_slice(device, "volume points", &volumes.points)?)
             .buffer(VOLUME_LENGTHS, &Buffer::from_slice(device, "volume lengths", lengths)?)

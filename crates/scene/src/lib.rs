@@ -70,5 +70,5 @@ pub use surface::{
 pub use transform::Transform;
 pub use volume::{
     Boundary, ExtinctionFactor, PerParticle, Stop, Transfer, Volume, VolumeKernel, VolumeMode,
-    VolumeShading,
+    VolumeRadius, VolumeShading,
 };

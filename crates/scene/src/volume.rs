@@ -19,8 +19,8 @@ pub struct Volume {
     pub scalar: String,
     /// How points are blended.
     pub kernel: VolumeKernel,
-    /// Reach of a point, 1e-12 to 1e15; `None`: from the points' spacing.
-    pub radius: Option<f64>,
+    /// How far a point reaches.
+    pub radius: VolumeRadius,
     /// ρ of the weights exp(−d²/2ρ), a length squared; `None`: (radius/2)².
     pub smoothing: Option<f64>,
     /// Distance of the samples along a ray; `None`: radius/4.
@@ -38,6 +38,17 @@ pub struct Volume {
     pub extinction: ExtinctionFactor,
     /// What the light of the scene does in it.
     pub shading: VolumeShading,
+}
+
+/// How far the points of a volume reach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum VolumeRadius {
+    /// As far as their spacing asks for: all alike where it is even, each by its own where it is not.
+    Auto,
+    /// Each as far as its own spacing asks for.
+    Adaptive,
+    /// All as far as this, 1e-12 to 1e15.
+    Length(f64),
 }
 
 /// What the light of the scene does in a volume.
@@ -172,7 +183,11 @@ impl Volume {
                 },
                 _ => VolumeKernel::Shepard,
             },
-            radius: length("radius"),
+            radius: match table.value("radius") {
+                Value::Text(text) if text == "adaptive" => VolumeRadius::Adaptive,
+                Value::Text(_) => VolumeRadius::Auto,
+                number => to_number(&number).map_or(VolumeRadius::Auto, VolumeRadius::Length),
+            },
             smoothing: length("smoothing"),
             step: length("step"),
             boundary: match table.text("boundary").as_str() {
@@ -262,7 +277,12 @@ pub(crate) fn write_volume(out: &mut String, volume: &Volume) -> fmt::Result {
             writeln!(out, "density = {}", quoted(name))?;
         }
     } else {
-        writeln!(out, "radius = {}", auto(volume.radius))?;
+        let radius = match volume.radius {
+            VolumeRadius::Auto => "\"auto\"".into(),
+            VolumeRadius::Adaptive => "\"adaptive\"".into(),
+            VolumeRadius::Length(length) => format!("{length:?}"),
+        };
+        writeln!(out, "radius = {radius}")?;
         writeln!(out, "smoothing = {}", auto(volume.smoothing))?;
     }
     writeln!(out, "step = {}", auto(volume.step))?;

@@ -68,6 +68,8 @@ stage! {
         SCENE_GLOSSY = 536_870_912;
         /// A transfer function is steep, and steps may be divided.
         SCENE_STEEP = 1_073_741_824;
+        /// A volume has grids by size.
+        SCENE_SIZES = 2_147_483_648;
         /// Of the specialization constant 1: the background lights what rays hit, and how bright it is decides where rays look
         /// for its light.
         LIGHTING_TABLE = 1;

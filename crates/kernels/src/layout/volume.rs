@@ -41,6 +41,12 @@ stage! {
         CELL_BELOW = 3;
         /// [`VolumeCell::counts`]: the bits of these.
         CELL_KINDS = 3;
+        /// [`VolumeCell::counts`], of a grid by size: finer points may be near.
+        CELL_FINER = 4;
+        /// [`VolumeCell::counts`]: all bits that are none of a float's.
+        CELL_MARKS = 7;
+        /// Steps of one length that a ray takes at a time, a power of two.
+        STRIDE_STEPS = 8;
         /// Parts of a step that is divided.
         MARCH_PARTS = 64;
         /// Places along a ray for which points are measured together, at most.
@@ -53,13 +59,14 @@ stage! {
         VOLUME_CELLS: VolumeCell as volume_cell;
         /// Of all volumes.
         VOLUME_POINTS: VolumePoint as volume_point;
-        /// 1/h by point, if any volume has particles.
+        /// 1/h by point, or one by its reach, if any volume has particles or points with a reach of their own.
         VOLUME_LENGTHS: f32 as inverse_length;
         /// Of all transfer functions.
         VOLUME_STOPS: VolumeStop as stop;
         /// By ray.
         MARCHES: March;
-        /// The ends of steps by ray and volume, two each where steps may be divided; of lit ones four floats.
+        /// The ends of steps by ray and volume, two each where steps may be divided; of lit ones four floats. With grids by size,
+        /// after them whether the volume is seen from the stretch of steps.
         MARCH_ENDS: f32;
         /// By ray, where volumes are lit.
         MARCH_LIGHTS: MarchLight;
@@ -75,7 +82,8 @@ stage! {
     structs {
         /// A field between points (\[T\] §6).
         VolumeInfo {
-            /// Over the points' bounding box grown by the radius, and up to a cell more.
+            /// Over the points' bounding box grown by the radius, and up to a cell more; that of the largest points where it
+            /// has grids by size.
             grid: GridInfo,
             /// In the cells of all volumes.
             first_cell: u32,
@@ -85,9 +93,9 @@ stage! {
             stop_count: u32,
             /// One of `VOLUME_*`.
             kernel: u32,
-            /// Of a point's reach.
+            /// Of a point's reach; where each has its own, of a mean one, and in a grid by size of the greatest there.
             square_radius: f32,
-            /// 1 / 2ρ.
+            /// 1 / 2ρ; 0: each point has its own reach r, and ρ = (r/2)². Then 1/r is its inverse length.
             inverse_width: f32,
             /// Index of the object in the scene.
             object: u32,
@@ -109,8 +117,12 @@ stage! {
             shading: u32,
             /// Places of a block, a power of two: so many that no weight is out of the range of floats.
             block: u32,
-            /// Unused.
-            pad: [u32; 3],
+            /// The first of its grids by size, coarsest first, in the list of volumes.
+            first_size: u32,
+            /// How many of these there are; 0: it has one grid.
+            size_count: u32,
+            /// log₂ of the length of steps, in shortest steps, where the points of this grid are the smallest around.
+            level: u32,
         }
         /// A cell of a volume's grid.
         VolumeCell {
@@ -167,14 +179,15 @@ stage! {
             numerator: f32,
             /// Its denominator.
             denominator: f32,
-            /// 0: not begun, 1: on its way, 2: done, 3: once more, for `along`.
+            /// 0: not begun, 1: on its way, 2: done, 3: once more, for `along`. From bit 2 on, in five bits each: log₂ of the
+            /// length of steps from the place on, and of the step before it, in shortest steps.
             state: u32,
             /// End of a step; from bit 24 on, its part, where 0 is the whole step; in bit 31, whether a volume so far
             /// divides it.
             place: u32,
             /// Volume.
             volume: u32,
-            /// Of cells around the places that are asked for.
+            /// Of cells around the places that are asked for; from bit 24 on, which grid by size they are of.
             row: u32,
             /// Points of the row that are done.
             cursor: u32,

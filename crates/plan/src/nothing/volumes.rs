@@ -1,9 +1,9 @@
 //! Volumes whose points do not have what is shown of them, or lie on a skin only.
 
 use super::Asked;
-use crate::volumes::cell_of;
+use crate::field;
 use kernels::layout::{
-    CELL_NOTHING, VOLUME_EMISSION, VOLUME_ISOSURFACE, VOLUME_SHEPARD, VOLUME_SPH, VolumeInfo,
+    CELL_NOTHING, VOLUME_EMISSION, VOLUME_ISOSURFACE, VOLUME_SHEPARD, VolumeInfo,
 };
 use points::Dimension;
 use rayon::prelude::*;
@@ -63,6 +63,7 @@ pub(super) fn without_values(of: &Asked<'_>) -> Vec<String> {
             }
             continue;
         }
+        // The coarsest grid by size knows of all points.
         let cells =
             info.first_cell as usize..info.first_cell as usize + info.grid.cell_count() as usize;
         let is_empty = volumes.cells[cells].iter().all(|cell| cell.counts == CELL_NOTHING);
@@ -96,34 +97,11 @@ pub(super) fn without_values(of: &Asked<'_>) -> Vec<String> {
 /// The greatest sum of a kernel at one of the points, or at many.
 fn greatest_sum(of: &Asked<'_>, info: &VolumeInfo, range: Range<usize>) -> f64 {
     let volumes = &of.plan.volumes;
-    let [nx, ny, nz] = info.grid.resolution.map(|n| n as usize);
-    let reach = (info.square_radius.sqrt() * info.grid.inverse_edge).ceil() as usize;
-    let around = |at: usize, count: usize| at.saturating_sub(reach)..(at + reach + 1).min(count);
     let sum_at = |place: [f32; 3]| {
-        let cell = cell_of(&info.grid, place);
-        let [x, y, z] = [cell % nx, cell / nx % ny, cell / nx / ny];
         let mut sum = 0.0;
-        for (z, y) in around(z, nz).flat_map(|z| around(y, ny).map(move |y| (z, y))) {
-            for x in around(x, nx) {
-                let at = info.first_cell as usize + x + nx * (y + ny * z);
-                let own = volumes.cells[at].first as usize..volumes.cells[at + 1].first as usize;
-                for other in own {
-                    let point = &volumes.points[other];
-                    let square: f64 = (0..3)
-                        .map(|axis| f64::from(point.position[axis] - place[axis]).powi(2))
-                        .sum();
-                    let weight = if info.kernel == VOLUME_SPH {
-                        let q = square.sqrt() * f64::from(volumes.inverse_lengths[other]);
-                        0.25 * (2.0 - q).max(0.0).powi(3) - (1.0 - q).max(0.0).powi(3)
-                    } else if square <= f64::from(info.square_radius) {
-                        (-square * f64::from(info.inverse_width)).exp()
-                    } else {
-                        0.0
-                    };
-                    sum += weight * f64::from(point.scalar);
-                }
-            }
-        }
+        field::for_each_near(volumes, info, place.map(f64::from), |other, weight, _, _| {
+            sum += weight * f64::from(volumes.points[other].scalar);
+        });
         sum
     };
     let step = range.len().div_ceil(MOST_SUMS).max(1);

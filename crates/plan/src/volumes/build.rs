@@ -1,8 +1,10 @@
 //! The points, cells and transfer functions of a volume, as kernels read them.
 
-use super::{Lengths, MOST_CELLS, Volumes, has_emission};
+use super::cells::{Range, Ranges, cell_of, grid_over, sorted_into_cells};
+use super::{Lengths, Volumes, has_emission};
 use crate::field;
 use crate::transfer::{scaled, stops_of};
+use bytemuck::Zeroable;
 use kernels::layout::{
     CELL_ABOVE, CELL_BELOW, CELL_LOOK, CELL_NOTHING, GridInfo, VOLUME_AVERAGE, VOLUME_EMISSION,
     VOLUME_EMITS, VOLUME_GRADIENT, VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_MAXIMUM,
@@ -10,6 +12,9 @@ use kernels::layout::{
     VolumeStop,
 };
 use scene::{Boundary, ExtinctionFactor, Object, Volume, VolumeKernel, VolumeMode, VolumeShading};
+
+/// The greatest smoothing length of particles that have one grid, by the median.
+const UNEVEN_LENGTHS: f32 = 4.0;
 
 impl Volumes {
     /// Gives the last volume, which shows integrals, the stops of a transfer function up to what no ray exceeds, and
@@ -32,19 +37,24 @@ impl Volumes {
         radius: f32,
         (points, stops): (Vec<(VolumePoint, f32)>, Vec<VolumeStop>),
     ) -> Lengths {
-        let smoothing = volume.smoothing.map_or(0.25 * radius * radius, |rho| rho as f32);
         let lengths = points.iter().filter(|(_, inverse)| *inverse > 0.0);
         let (sum, count) = lengths.fold((0.0, 0u32), |(sum, count), (_, inverse)| {
             (sum + 1.0 / f64::from(*inverse), count + 1)
         });
+        let mean = (sum / f64::from(count.max(1))) as f32;
+        let by_size = reaches_by_size(volume, &points);
+        let is_own = by_size.is_some() && !matches!(volume.kernel, VolumeKernel::Sph { .. });
+        let smoothing = match is_own {
+            true => 0.25 * mean * mean,
+            false => volume.smoothing.map_or(0.25 * radius * radius, |rho| rho as f32),
+        };
         let step = match (volume.step, count) {
             (Some(step), _) => step as f32,
             (None, 0) => 0.25 * radius,
-            (None, _) => (0.5 * sum / f64::from(count)) as f32,
+            (None, _) if is_own => 0.25 * mean,
+            (None, _) => 0.5 * mean,
         };
-        self.step = self.step.min(step);
-        let (grid, high) = grid_over(&points, radius);
-        let (first_cell, first_stop) = (self.cells.len() as u32, self.stops.len() as u32);
+        let first_stop = self.stops.len() as u32;
         self.stops.extend(stops);
         let kernel = match volume.kernel {
             VolumeKernel::Shepard => VOLUME_SHEPARD,
@@ -52,16 +62,13 @@ impl Volumes {
             VolumeKernel::Sph { .. } => VOLUME_SPH,
         };
         let info = VolumeInfo {
-            grid,
-            first_cell,
             first_stop,
             stop_count: self.stops.len() as u32 - first_stop,
             kernel,
             square_radius: radius * radius,
-            inverse_width: 1.0 / (2.0 * smoothing),
+            inverse_width: if is_own { 0.0 } else { 1.0 / (2.0 * smoothing) },
             object: index,
             bounded: u32::from(volume.boundary != Boundary::None),
-            high,
             mode: match volume.mode {
                 VolumeMode::Emission => VOLUME_EMISSION,
                 VolumeMode::Maximum => VOLUME_MAXIMUM,
@@ -86,12 +93,22 @@ impl Volumes {
                 VolumeShading::Gradient => VOLUME_GRADIENT,
                 VolumeShading::Scatter { .. } => VOLUME_SCATTERS,
             },
-            block: 0,
-            pad: [0; 3],
+            ..VolumeInfo::zeroed()
         };
+        let lengths =
+            Lengths { smoothing: smoothing.into(), step: step.into(), of_sizes: Vec::new() };
+        if let Some(reaches) = by_size {
+            let given = volume.step.map(|step| step as f32);
+            let (info, steps) = self.list_by_size(info, &points, &reaches, given);
+            self.infos.push(info);
+            return Lengths { of_sizes: steps, ..lengths };
+        }
+        let places = points.iter().map(|(point, _)| point.position);
+        let (grid, high) = grid_over(places, radius, radius, None);
+        let info = VolumeInfo { grid, high, first_cell: self.cells.len() as u32, ..info };
         self.list(&info, &points, step);
         self.infos.push(info);
-        Lengths { smoothing: smoothing.into(), step: step.into() }
+        lengths
     }
 
     /// Multiplies the extinctions of the last volume; `chosen` says by what where the scene leaves it to the program.
@@ -112,89 +129,58 @@ impl Volumes {
         }
     }
 
-    /// Counts, adds up and scatters the points, in their order, and says which cells may show anything.
+    /// Lists the points by cell, and says which cells may show anything.
     fn list(&mut self, info: &VolumeInfo, points: &[(VolumePoint, f32)], step: f32) {
-        let grid = &info.grid;
-        let base = self.points.len();
-        let cell_of: Vec<usize> = points.iter().map(|(p, _)| cell_of(grid, p.position)).collect();
-        let cells = grid.cell_count() as usize;
-        let mut first = vec![0u32; cells + 1];
-        for &cell in &cell_of {
-            first[cell + 1] += 1;
-        }
-        for cell in 0..cells {
-            first[cell + 1] += first[cell];
-        }
-        let mut next = first.clone();
-        self.points.resize(base + points.len(), VolumePoint { position: [0.0; 3], scalar: 0.0 });
-        self.inverse_lengths.resize(base + points.len(), 0.0);
-        for ((point, inverse_length), &cell) in points.iter().zip(&cell_of) {
-            self.points[base + next[cell] as usize] = *point;
-            self.inverse_lengths[base + next[cell] as usize] = *inverse_length;
-            next[cell] += 1;
-        }
-        let seen = self.cells_seen(info, points, &cell_of, step);
-        self.cells.extend(
-            first
-                .iter()
-                .enumerate()
-                .map(|(cell, &at)| VolumeCell { first: base as u32 + at, counts: seen[cell] }),
-        );
+        let first = self.push_points(&info.grid, points);
+        // Of a place in the cell, and of the ends of the steps that end there.
+        let around = info.square_radius.sqrt() + step;
+        let ranges = Ranges::around(&info.grid, points.iter().map(|(point, _)| point), around);
+        let kinds = ranges.0.into_iter().map(|range| self.kind_of(info, range));
+        let kinds: Vec<u32> = kinds.chain([CELL_NOTHING]).collect();
+        let cells = first.into_iter().zip(kinds);
+        self.cells.extend(cells.map(|(first, counts)| VolumeCell { first, counts }));
     }
 
-    /// What may be seen from each cell: something, where there are points in the cells around, and some
-    /// value that they can have together has an extinction or an emission; or on which side of an isosurface all of it
-    /// is. What counts for a place counts for the steps that end there, too: of a step with an end in a cell from which
-    /// nothing is seen, nothing is seen.
-    fn cells_seen(
-        &self,
-        info: &VolumeInfo,
+    /// Lists points by cell, in their order within one; returns where those of each cell begin in the points of all
+    /// volumes, and after the last where they end.
+    pub(super) fn push_points(
+        &mut self,
+        grid: &GridInfo,
         points: &[(VolumePoint, f32)],
-        cell_of: &[usize],
-        step: f32,
     ) -> Vec<u32> {
-        let [nx, ny, nz] = info.grid.resolution.map(|n| n as usize);
-        let none = (f32::INFINITY, f32::NEG_INFINITY, 0u32);
-        let mut ranges = vec![none; nx * ny * nz];
-        let merge =
-            |a: (f32, f32, u32), b: (f32, f32, u32)| (a.0.min(b.0), a.1.max(b.1), a.2 + b.2);
-        for ((point, _), &cell) in points.iter().zip(cell_of) {
-            ranges[cell] = merge(ranges[cell], (point.scalar, point.scalar, 1));
-        }
-        // Of a place in the cell, and of the ends of the steps that end there.
-        let cells = (info.square_radius.sqrt() + step) * info.grid.inverse_edge;
-        let reach = ((cells + 1e-3).min(MOST_CELLS as f32)) as usize + 1;
-        // The box around a cell, one axis after the other.
-        for (stride, count) in [(1, nx), (nx, ny), (nx * ny, nz)] {
-            let before = ranges.clone();
-            for (at, range) in ranges.iter_mut().enumerate() {
-                let place = at / stride % count;
-                let (low, high) = (place.saturating_sub(reach), (place + reach).min(count - 1));
-                *range = (low..=high)
-                    .map(|other| before[at + other * stride - place * stride])
-                    .fold(none, merge);
+        let base = self.points.len() as u32;
+        let cells: Vec<usize> = points.iter().map(|(p, _)| cell_of(grid, p.position)).collect();
+        let (order, mut first) = sorted_into_cells(&cells, grid.cell_count() as usize);
+        let sorted = || order.iter().map(|&at| points[at as usize]);
+        self.points.extend(sorted().map(|(point, _)| point));
+        self.inverse_lengths.extend(sorted().map(|(_, inverse_length)| inverse_length));
+        first.iter_mut().for_each(|at| *at += base);
+        first
+    }
+
+    /// What may be seen where the scalars of the points in reach are in a range: something, where some value that they can
+    /// have together has an extinction or an emission; or on which side of an isosurface all of it is. What counts for a
+    /// place counts for the steps that end there, too: of a step with an end in a cell from which nothing is seen, nothing
+    /// is seen.
+    pub(super) fn kind_of(&self, info: &VolumeInfo, near: Range) -> u32 {
+        let Range { low, high, count } = near;
+        let (low, high) = match info.kernel {
+            // No kernel is over 1.
+            VOLUME_SUM | VOLUME_SPH => {
+                ((low * count as f32).min(0.0), (high * count as f32).max(0.0))
             }
-        }
-        let seen = |(low, high, count): (f32, f32, u32)| {
-            let (low, high) = match info.kernel {
-                // No kernel is over 1.
-                VOLUME_SUM | VOLUME_SPH => {
-                    ((low * count as f32).min(0.0), (high * count as f32).max(0.0))
-                }
-                _ => (low, high),
-            };
-            let margin = rounding(low, high);
-            match info.mode {
-                _ if count == 0 => CELL_NOTHING,
-                VOLUME_ISOSURFACE if high + margin < info.iso => CELL_BELOW,
-                VOLUME_ISOSURFACE if low - margin > info.iso => CELL_ABOVE,
-                VOLUME_ISOSURFACE => CELL_LOOK,
-                VOLUME_EMISSION if !self.shows(info, low, high) => CELL_NOTHING,
-                // What cannot be seen counts too, where not each place is seen for itself.
-                _ => CELL_LOOK,
-            }
+            _ => (low, high),
         };
-        ranges.into_iter().map(seen).chain([CELL_NOTHING]).collect()
+        let margin = rounding(low, high);
+        match info.mode {
+            _ if count == 0 => CELL_NOTHING,
+            VOLUME_ISOSURFACE if high + margin < info.iso => CELL_BELOW,
+            VOLUME_ISOSURFACE if low - margin > info.iso => CELL_ABOVE,
+            VOLUME_ISOSURFACE => CELL_LOOK,
+            VOLUME_EMISSION if !self.shows(info, low, high) => CELL_NOTHING,
+            // What cannot be seen counts too, where not each place is seen for itself.
+            _ => CELL_LOOK,
+        }
     }
 
     /// Whether the transfer function shows anything from `low` to `high`, and a rounding farther.
@@ -220,39 +206,20 @@ impl Volumes {
     }
 }
 
+/// How far each point reaches, where that is uneven enough for grids by size: where they have reaches of their own, or
+/// smoothing lengths of which the greatest is far over the one in the middle.
+fn reaches_by_size(volume: &Volume, points: &[(VolumePoint, f32)]) -> Option<Vec<f32>> {
+    let is_sph = matches!(volume.kernel, VolumeKernel::Sph { .. });
+    let reach = |inverse: f32| if is_sph { 2.0 / inverse } else { 1.0 / inverse };
+    let reaches: Vec<f32> = points.iter().map(|(_, inverse)| reach(*inverse)).collect();
+    let mut sorted = reaches.clone();
+    sorted.sort_unstable_by(f32::total_cmp);
+    let (&middle, &last) = (sorted.get(sorted.len() / 2)?, sorted.last()?);
+    let is_uneven = last.is_finite() && (!is_sph || last >= UNEVEN_LENGTHS * middle);
+    is_uneven.then_some(reaches)
+}
+
 /// How far beyond the greatest and least of some values rounding may take what is made of them.
 fn rounding(low: f32, high: f32) -> f32 {
     1e-5 * low.abs().max(high.abs())
-}
-
-/// Cells of an edge of the radius, over the points' bounding box grown by it, and the highest corner of that.
-fn grid_over(points: &[(VolumePoint, f32)], radius: f32) -> (GridInfo, [f32; 3]) {
-    let along = |axis: usize| points.iter().map(move |(p, _)| p.position[axis]);
-    let (mut low, mut high, mut extent) = ([0.0; 3], [0.0; 3], [0.0f64; 3]);
-    for axis in 0..3 {
-        let least = along(axis).fold(f32::INFINITY, f32::min);
-        let most = along(axis).fold(f32::NEG_INFINITY, f32::max);
-        if least <= most {
-            low[axis] = least - radius;
-            high[axis] = most + radius;
-            extent[axis] = f64::from(most) - f64::from(least) + 2.0 * f64::from(radius);
-        }
-    }
-    let longest = extent.iter().copied().fold(0.0, f64::max);
-    let edge = f64::from(radius).max(longest / MOST_CELLS);
-    let grid = GridInfo {
-        origin: low,
-        edge: edge as f32,
-        resolution: extent.map(|length| (length * 1.000_01 / edge).ceil().max(1.0) as u32),
-        inverse_edge: 1.0 / edge as f32,
-    };
-    (grid, high)
-}
-
-pub(crate) fn cell_of(grid: &GridInfo, position: [f32; 3]) -> usize {
-    let at = [0, 1, 2].map(|axis| {
-        let cell = ((position[axis] - grid.origin[axis]) * grid.inverse_edge).floor();
-        (cell.max(0.0) as usize).min(grid.resolution[axis] as usize - 1)
-    });
-    at[0] + grid.resolution[0] as usize * (at[1] + grid.resolution[1] as usize * at[2])
 }

@@ -140,7 +140,7 @@ fn every_built_key_is_read() {
     let volume = Volume {
         scalar: "density".into(),
         kernel: VolumeKernel::Sum,
-        radius: Some(0.05),
+        radius: VolumeRadius::Length(0.05),
         smoothing: Some(0.0006),
         step: Some(0.01),
         boundary: Boundary::Attribute("skin".into()),

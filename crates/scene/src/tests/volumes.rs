@@ -28,6 +28,14 @@ fn a_volume_says_once_what_a_scalar_looks_like() {
         ),
         (format!("{stops}iso = 1"), "iso: belongs to mode \"isosurface\""),
         (format!("{stops}mass = 1"), "mass: belongs to kernel \"sph\""),
+        (
+            format!("{stops}radius = \"adaptive\"\nsmoothing = 0.01"),
+            "smoothing: found a number beside radius = \"adaptive\"",
+        ),
+        (
+            format!("{stops}radius = \"uneven\""),
+            "radius: found the string \"uneven\", expected \"auto\" or \"adaptive\"",
+        ),
         (format!("{stops}mode = \"isosurface\""), "iso: missing"),
         ("mode = \"isosurface\"\niso = 1\nboundary = \"all\"".into(), "boundary: found \"all\""),
         (

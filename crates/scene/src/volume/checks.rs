@@ -53,6 +53,13 @@ pub(super) fn volume_says_it_once(volume: &Reader<'_>) -> Result<(), Fault> {
         ),
     ];
     isosurface_fits(volume)?;
+    let smoothing = volume.written("smoothing").map(|node| &node.value);
+    let is_number = matches!(smoothing, Some(Value::Integer(_) | Value::Float(_)));
+    let is_adaptive = matches!(volume.value("radius"), Value::Text(text) if text == "adaptive");
+    if is_adaptive && is_number {
+        let message = "found a number beside radius = \"adaptive\", where each point has a smoothing of its own; remove it";
+        return Err(("smoothing", message.into()));
+    }
     let extinction = volume.written("extinction").map(|node| &node.value);
     if has("transfer") && matches!(extinction, Some(Value::List(_))) {
         let message = "found two numbers beside transfer, expected a factor on the extinctions of its stops; \

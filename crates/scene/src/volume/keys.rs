@@ -51,9 +51,11 @@ pub(crate) static VOLUME: Table = Table {
         ),
         key(
             "radius",
-            AUTO_LENGTH,
+            Kind::Either(&[Kind::Choice(&["auto", "adaptive"]), LENGTH]),
             Value("\"auto\""),
-            "Reach of a point; with kernel `sph`, the largest 2h, and not to be given.",
+            "Reach of a point. With `adaptive`, each has its own, the mean over its 16 neighbours of the distance to \
+             their 16th; `auto` takes that where it is uneven, and else one for all. With kernel `sph` a particle \
+             reaches 2h, and nothing is to be given.",
         ),
         key(
             "smoothing",
@@ -62,9 +64,15 @@ pub(crate) static VOLUME: Table = Table {
                 Kind::Number(numbers(SHORT, LARGE, "scene units squared")),
             ]),
             Value("\"auto\""),
-            "ρ in the weight exp(−d²/2ρ).",
+            "ρ in the weight exp(−d²/2ρ); `auto` takes (radius/2)². A number does not go with `radius = \
+             \"adaptive\"`.",
         ),
-        key("step", AUTO_LENGTH, Value("\"auto\""), "Distance of the samples along a ray."),
+        key(
+            "step",
+            AUTO_LENGTH,
+            Value("\"auto\""),
+            "Distance of the samples along a ray; `auto` takes a quarter of the reach of the points around.",
+        ),
         key(
             "mode",
             Kind::Choice(&["emission", "maximum", "average", "integral", "isosurface"]),
