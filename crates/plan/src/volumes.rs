@@ -23,9 +23,9 @@ use crate::transfer::{own_range, stops_of};
 use bytemuck::Zeroable;
 use kernels::layout::{
     MATERIAL_CLOUD, NONE, ObjectInfo, Polynomial, SCENE_GLOWS, SCENE_MANY_VOLUMES, SCENE_PARTICLES,
-    SCENE_SIZES, SCENE_STEEP, SCENE_WEIGHTS, SCENE_WHOLES, VOLUME_AVERAGE, VOLUME_EMISSION,
-    VOLUME_EMITS, VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_LIGHTS, VOLUME_MAXIMUM,
-    VOLUME_SHEPARD, VOLUME_SPH, VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
+    SCENE_SIZES, SCENE_STEEP, SCENE_WEIGHTS, SCENE_WHOLES, STRIDE_STEPS, VOLUME_AVERAGE,
+    VOLUME_EMISSION, VOLUME_EMITS, VOLUME_INTEGRAL, VOLUME_ISOSURFACE, VOLUME_LIGHTS,
+    VOLUME_MAXIMUM, VOLUME_SHEPARD, VOLUME_SPH, VolumeCell, VolumeInfo, VolumePoint, VolumeStop,
 };
 use particles::{Particle, Sph};
 use points::{Cloud, Dimension, PointSet, Watch, bounds_of};
@@ -290,9 +290,13 @@ fn reach_of(
     if is_auto && !Spacings::is_uneven(&own) {
         return Ok(Reach::Even(spacings.mean()));
     }
-    // Steps of a quarter of the reach, as many as floats count.
+    // Steps of a quarter of the reach, as many as floats count, through a box that is grown by the greatest reach and a
+    // stretch of its steps.
+    let most = own.iter().copied().fold(0.0, f64::max);
     let [low, high] = bounds_of([positions]).unwrap_or_default();
-    let least = 4.0 * length([0, 1, 2].map(|axis| high[axis] - low[axis])) / MOST_SAMPLES * 1.5;
+    let grown = 2.0 * most * (1.0 + 0.25 * f64::from(STRIDE_STEPS));
+    let longest = length([0, 1, 2].map(|axis| high[axis] - low[axis] + grown));
+    let least = 1.01 * 4.0 * longest / MOST_SAMPLES;
     own.iter_mut().for_each(|reach| *reach = reach.max(least));
     Ok(Reach::Own(own))
 }
