@@ -4,6 +4,7 @@
 // reads   the ray state, volumes, their cells, points and lengths
 //         paths            whether a ray is inside glass
 // writes  searches         where each ray goes on in the next pass
+//         blocks           by ray, the scalars at a few places, or what they are made of so far
 //         hits, the ray state    of rays that met one: the hit, and the slot that stands for it
 //         live             how many rays are not done
 // runs    one invocation per ray of the wave; dispatched until none lives
@@ -13,9 +14,9 @@
 // through glass: instead of `hits`, the normal at the nearest isosurface is written, as the throughput of the shadow ray's
 // path, which is 0 where there is none.
 //
-// The scalar is taken at the midpoints of steps and at the end of the way. Where it passes the number
-// between two samples, a few turns of regula falsi (Illinois) close in on the place, and the scalar's
-// gradient there is the normal. A pass can end after any row of cells or any 64 points of one.
+// The scalar is taken at the midpoints of steps and at the end of the way, a block of places at a time (block.glsl). Where it
+// passes the number between two samples, a few turns close in on the place, each with a block of places between
+// (iso_search.glsl), and the scalar's gradient there is the normal. A pass can end after any few runs of points.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define STATE_READS
@@ -35,6 +36,7 @@ layout(local_size_x = LINE_GROUP) in;
 layout(std430, binding = LIVE) buffer Live { uint live; };
 layout(std430, binding = PATHS) buffer Paths { Path paths[]; };
 layout(std430, binding = ISO_SEARCHES) buffer Searches { IsoSearch searches[]; };
+layout(std430, binding = VOLUME_BLOCKS) buffer Blocks { VolumeBlock blocks[]; };
 #if defined(SHADOWS) || defined(PASSING)
 layout(std430, binding = LIGHT_SUMS) readonly buffer LightSums { LightSum light_sums[]; };
 #else
@@ -42,18 +44,9 @@ layout(std430, binding = HITS) buffer Hits { Hit hits[]; };
 #endif
 layout(push_constant) uniform Push { MarchParams params; };
 
-#define AT_ONCE 64u // points of a row
+#include "iso_search.glsl"
+
 #define MOST_SAMPLES 16777215.0 // floats count little farther
-#define TURNS 8u
-#define ON_IT -1e-20 // the value of a place on the surface: 0 is not known
-#define SKIPPED 0u // looked
-#define LOOKED 1u
-#define TO_LOOK 2u
-#define MOVED_LOW 3u // the end that was moved by the last turn
-#define MOVED_HIGH 4u
-#define UNKNOWN 0u // sides
-#define BELOW 1u
-#define ABOVE 2u
 #define NEW 0u // states
 #define STEPPING 1u
 #define CLOSING_IN 2u
@@ -88,18 +81,9 @@ float sample_at(vec2 way, uint place, uint level) {
     return min(way.x + (float(place) + half_step) * params.step, way.y);
 }
 
-// The sample after one of a step of a level, at t; the one at the end of the way is the last.
-uint sample_after(vec2 way, float t, uint place, uint level, uint samples) {
-    if (!scene_has(SCENE_SIZES)) return place + 1u;
-    return t >= way.y ? samples : place + (1u << level);
-}
-
-// Between two places on either side: on the line between their values, or in the middle.
-float between(IsoSearch search) {
-    float span = search.value_low - search.value_high;
-    bool apart = search.value_low * search.value_high < 0.0;
-    float part = apart ? search.value_low / (apart ? span : 1.0) : 0.5;
-    return search.low + part * (search.high - search.low);
+// Whether a sample is that at the end of the way, the last.
+bool is_last(vec2 way, uint place, uint level, uint samples) {
+    return scene_has(SCENE_SIZES) ? sample_at(way, place, level) >= way.y : place + 1u >= samples;
 }
 
 IsoSearch without_sums(IsoSearch search) {
@@ -182,139 +166,110 @@ void main() {
             search.side = skips ? side : search.side;
             search.low = skips ? t : search.low;
             search.looked = skips ? SKIPPED : search.looked;
+            bool ends = is_last(way, search.place, stride.level, samples);
             stride.before = skips ? stride.level : stride.before;
-            search.place = skips ? sample_after(way, t, search.place, stride.level, samples) : search.place;
+            search.place = skips ? (ends ? samples : search.place + (1u << stride.level)) : search.place;
             work_left -= min(work_left, 1u);
         }
         bool stepping = search.state == STEPPING;
         bool sampling = !stepping || search.place < samples;
         bool turning = search.state == TURNING;
-        float t = stepping ? sample_at(way, search.place, stride.level) : search.here;
-        vec3 x = o + t * d;
-        uint grids = sampling ? grids_of(volume, stepping ? stride.level : 0u) : 0u;
-        bool particles = volume.kernel == VOLUME_SPH;
-        uint size = search.row >> SIZE_BITS, row = bitfieldExtract(search.row, 0, SIZE_BITS);
-
-        while (size < grids && work_left > 0u) {
-            VolumeInfo grid = grid_of(volume, size);
-            float reach = sqrt(grid.square_radius);
-            uvec3 low, high;
-            cells_around(grid.grid, x, reach, low, high);
-            uint rows = (high.y - low.y + 1u) * (high.z - low.z + 1u);
-            while (row < rows && work_left > 0u) {
-                uvec2 range = row_points(grid, low, high, row, x, reach);
-                uint first = range.x + search.cursor;
-                uint count = min(range.y - first, AT_ONCE);
-                uint end_of_turn = first + count;
-                for (uint i = particles ? end_of_turn : first; i < end_of_turn; i += 4u) {
-                    FourPoints four = four_points(i, end_of_turn, x);
-                    vec4 weights = gaussians(volume, four, inverse_squares_of(volume, four));
-                    search.numerator = add_up(search.numerator, weights * four.scalars);
-                    search.denominator = add_up(search.denominator, weights);
-                }
-                for (uint i = particles ? first : end_of_turn; i < end_of_turn; i += 4u) {
-                    FourPoints four = four_points(i, end_of_turn, x);
-                    vec4 weights = splines(four, inverse_lengths_of(four));
-                    search.numerator = add_up(search.numerator, weights * four.scalars);
-                    search.denominator = add_up(search.denominator, weights);
-                }
-                uint pulls = turning ? count : 0u;
-                for (uint i = 0u; i < pulls; ++i) {
-                    VolumePoint point = volume_point_at(first + i);
-                    vec3 y = point.position - x;
-                    float square = dot3(y, y);
-                    float inverse_length = particles || scene_has(SCENE_SIZES) ? inverse_length_at(first + i) : 0.0;
-                    float limit = volume.square_radius, width = volume.inverse_width, share = 1.0;
-                    if (has_own_reaches(volume)) {
-                        share = inverse_length * inverse_length;
-                        limit = 1.0 / share;
-                        width = 2.0 * share;
-                    }
-                    float gaussian = square <= limit ? exp_negative(-square * width) * share : 0.0;
-                    float pull = particles ? spline_pull(sqrt(square) * inverse_length, inverse_length) : gaussian;
-                    search.pull += (pull * point.scalar) * y;
-                    search.weights_pull += (particles ? 0.0 : pull) * y;
-                }
-                bool row_ends = first + count >= range.y;
-                search.cursor = row_ends ? 0u : search.cursor + count;
-                row += row_ends ? 1u : 0u;
-                work_left -= min(work_left, count + 2u);
-            }
-            bool ends = row >= rows;
-            size += ends ? 1u : 0u;
-            row = ends ? 0u : row;
+        // The end of the way is a block by itself.
+        uint level = stepping ? stride.level : 0u;
+        bool single = stepping && is_last(way, search.place, level, samples);
+        uint first = single ? search.place : (stepping ? (search.place >> level & ~(volume.block - 1u)) << level : 0u);
+        uint from = stepping ? (search.place - first) >> level : 0u;
+        // The sample before is in the block, and not looked at: it is, since the surface may be after it.
+        bool goes_back = stepping && sampling && !skips && search.looked == SKIPPED && from > 0u;
+        from -= goes_back ? 1u : 0u;
+        search.looked = goes_back ? TO_LOOK : search.looked;
+        search.side = goes_back ? UNKNOWN : search.side;
+        // Of the block, the samples up to the first that may be passed over are asked for.
+        uint last = single ? 0u : volume.block - 1u;
+        bool shortens = stepping && sampling && !skips;
+        while (shortens && last > from) {
+            shortens = is_last(way, first + (last << level), level, samples);
+            last -= shortens ? 1u : 0u;
         }
-        search.row = row | size << SIZE_BITS;
-        work_left -= min(work_left, 4u);
+        uint until = stepping ? from + 1u : last;
+        bool more = stepping && sampling && !skips;
+        while (more && until < last) {
+            vec3 x = o + sample_at(way, first + (until << level), level) * d;
+            more = scene_has(SCENE_SIZES) || seen_from(volume, x) == CELL_LOOK;
+            until += more ? 1u : 0u;
+        }
+        last = min(until, last);
+        float apart = scene_has(SCENE_SIZES) ? params.step * float(1u << level) : params.step;
+        vec2 places = stepping ? vec2(sample_at(way, first, level), apart) : places_of_turn(search, volume.block);
+        Block block = Block(o + places.x * d, d, places.y, float(from) * places.y, float(last) * places.y, level);
+        bool weighed = weigh_block(volume, block, at, sampling && !turning && !skips, search, work_left);
+        bool turned = weigh_pulls(volume, o + search.here * d, turning, search, work_left);
+        work_left -= min(work_left, 24u); // turns of loops
 
-        if (size >= grids) {
-            bool reached = search.denominator > 0.0;
-            bool mean = volume.kernel == VOLUME_SHEPARD;
-            float scalar = mean && reached ? search.numerator / (reached ? search.denominator : 1.0) : search.numerator;
-            float exact = scalar - volume.iso;
-            float value = exact == 0.0 ? ON_IT : exact;
-            uint side = mean && !reached ? UNKNOWN : (value > 0.0 ? ABOVE : BELOW);
-            if (!sampling) {
-                ++search.volume;
-                search.state = NEW;
-            } else if (stepping && search.looked == SKIPPED && side != UNKNOWN && search.side != UNKNOWN && side != search.side) {
-                search.looked = TO_LOOK; // at the place before, first
-                search.side = UNKNOWN;
-                stride.level = stride.before;
-                search.place -= 1u << stride.level;
-            } else if (stepping) {
-                bool crosses = side != UNKNOWN && search.side != UNKNOWN && side != search.side;
-                search.looked = LOOKED;
-                search.high = t;
-                search.value_high = value;
-                search.here = between(search);
+        uint walks = weighed ? 1u : 0u;
+        while (walks > 0u) {
+            --walks;
+            bool crosses = false;
+            uint place = from;
+            while (place <= last && !crosses) {
+                float t = stepping ? sample_at(way, first + (place << level), level) : places.x + float(place) * places.y;
+                float value = blocks[at].scalars[place];
+                uint side = side_of_value(value);
+                crosses = side != UNKNOWN && search.side != UNKNOWN && side != search.side;
+                search.high = crosses ? t : search.high;
+                search.value_high = crosses ? value : search.value_high;
                 search.low = crosses ? search.low : t;
-                search.value_low = crosses ? search.value_low : (side == UNKNOWN ? 0.0 : value);
-                search.side = crosses ? search.side : side;
-                uint next_place = sample_after(way, t, search.place, stride.level, samples);
-                stride.before = stride.level;
-                search.place = crosses ? 0u : next_place;
-                search.state = crosses ? CLOSING_IN : STEPPING;
-#ifdef SHADOWS
-                blocked = blocked || crosses;
-                search.volume = crosses ? params.volume_count : search.volume;
-#endif
-            } else if (!turning) {
-                // Of an end that stays where it is for two turns, half the value counts (Illinois).
-                bool before = side == UNKNOWN || side == search.side;
-                bool again = search.looked == (before ? MOVED_LOW : MOVED_HIGH);
-                float share = again ? 0.5 : 1.0;
-                search.low = before ? t : search.low;
-                search.high = before ? search.high : t;
-                float kept_low = share * search.value_low, kept_high = share * search.value_high;
-                search.looked = before ? MOVED_LOW : MOVED_HIGH;
-                search.value_low = before ? (side == UNKNOWN ? 0.0 : value) : kept_low;
-                search.value_high = before ? kept_high : value;
-                ++search.place;
-                search.here = between(search);
-                search.state = search.place < TURNS ? CLOSING_IN : TURNING;
-            } else {
-#ifndef SHADOWS
-                vec3 gradient = gradient_of(volume, scalar, search.pull, search.weights_pull);
-                float square = dot3(gradient, gradient);
-                bool steep = square > 0.0;
-                vec3 normal = steep ? gradient / (steep ? sqrt(square) : 1.0) : d;
-                normal = dot3(normal, d) > 0.0 ? -normal : normal;
-#ifdef PASSING
-                paths[at].throughput = normal;
-#else
-                hits[at] = Hit(x, t, normal, HIT_ACCEPTED);
-#endif
-                ray.hit_t = t;
-                ray.hit_slot = volume.slot;
-                end = t;
-                store_ray(at, ray);
-#endif
-                ++search.volume;
-                search.state = NEW;
+                search.value_low = crosses ? search.value_low : value;
+                search.side = crosses || (side == UNKNOWN && !stepping) ? search.side : side;
+                place += crosses ? 0u : 1u;
             }
+            bool returns = stepping && crosses && place == from && search.looked == SKIPPED;
+            bool found = stepping && crosses && !returns;
+            bool narrow = search.looked == NARROW;
+            uint turns = search.place + 1u;
+            bool ends = !stepping && (turns >= (volume.block < BLOCK_PLACES ? TURNS_OF_FEW : TURNS) || (narrow && crosses && place > 0u));
+            bool known = search.value_low * search.value_high < 0.0;
+            search.looked = stepping ? (returns ? TO_LOOK : (found ? WIDE : LOOKED)) : (narrow || !known ? WIDE : NARROW);
+            search.side = returns ? UNKNOWN : search.side;
+            uint back = first + (from << level) - (1u << stride.before);
+            uint next_place = single ? samples : first + (place << level);
+            search.place = stepping ? (returns ? back : (found ? 0u : next_place)) : turns;
+            stride.level = returns ? stride.before : stride.level;
+            stride.before = stepping && !returns ? stride.level : stride.before;
+            search.state = found ? CLOSING_IN : (ends ? TURNING : search.state);
+            search.here = between(search);
+#ifdef SHADOWS
+            blocked = blocked || found;
+            search.volume = found ? params.volume_count : search.volume;
+#endif
+        }
+        uint turns = turned ? 1u : 0u;
+        while (turns > 0u) {
+            --turns;
+#ifndef SHADOWS
+            float t = search.here;
+            bool mean = volume.kernel == VOLUME_SHEPARD && search.denominator > 0.0;
+            float scalar = search.numerator / (mean ? search.denominator : 1.0);
+            vec3 gradient = gradient_of(volume, scalar, search.pull, search.weights_pull);
+            float square = dot3(gradient, gradient);
+            bool steep = square > 0.0;
+            vec3 normal = steep ? gradient / (steep ? sqrt(square) : 1.0) : d;
+            normal = dot3(normal, d) > 0.0 ? -normal : normal;
+#ifdef PASSING
+            paths[at].throughput = normal;
+#else
+            hits[at] = Hit(o + t * d, t, normal, HIT_ACCEPTED);
+#endif
+            ray.hit_t = t;
+            ray.hit_slot = volume.slot;
+            end = t;
+            store_ray(at, ray);
+#endif
             search = without_sums(search);
         }
+        bool over = turned || !sampling;
+        search.volume += over ? 1u : 0u;
+        search.state = over ? NEW : search.state;
     }
 #ifdef SHADOWS
     if (blocked) {

@@ -3,6 +3,7 @@
 //! The kernel passes over samples whose side their cell tells, unless that is where the side changes. The
 //! twin looks at all of them.
 
+use crate::block::{Block, scalars};
 use crate::camera_rays::Ray;
 use crate::grid::within_box;
 use crate::media::Media;
@@ -10,11 +11,15 @@ use crate::real::{Real, V3};
 use crate::steps::{begins_stretch, longest_at};
 use crate::surface_hit::Hit;
 use crate::volume::{MOST_SAMPLES, Sums, look_by_size};
-use kernels::layout::{VOLUME_ISOSURFACE, VOLUME_SHEPARD, VolumeInfo};
+use kernels::layout::{BLOCK_PLACES, VOLUME_ISOSURFACE, VOLUME_SHEPARD, VolumeInfo};
 use plan::Volumes;
 
-/// Turns of regula falsi.
-const TURNS: u32 = 8;
+/// Turns that close in, at most.
+const TURNS: u32 = 4;
+/// The same where a block has fewer than `BLOCK_PLACES`.
+const TURNS_OF_FEW: u32 = 8;
+/// Of the way between the ends, from one place of a narrow turn to the next.
+const NARROWER: f64 = 1.0 / 64.0;
 /// The value of a place on the surface: 0 is not known.
 const ON_IT: f32 = -1e-20;
 
@@ -45,14 +50,24 @@ impl<R: Real> Search<'_, R> {
         self.ray.origin + self.ray.direction.times(t)
     }
 
-    /// At a place, where steps are of a level.
-    fn sample(&self, t: R, level: u32) -> Sample<R> {
-        let sums = Sums::at(self.volume, self.volumes, (self.place(t), level), None);
-        let exact = sums.scalar(self.volume) - R::of_f32(self.volume.iso);
-        let value = if exact == R::of(0.0) { R::of_f32(ON_IT) } else { exact };
-        let known = self.volume.kernel != VOLUME_SHEPARD || sums.reached();
-        let side = if value > R::of(0.0) { Side::Above } else { Side::Below };
-        Sample { t, value: if known { value } else { R::of(0.0) }, side: known.then_some(side) }
+    /// The samples at places of a block from `begin` along the ray on, each `apart` from the next, where steps are of a level.
+    fn block(
+        &self,
+        begin: R,
+        apart: R,
+        (count, level): (u32, u32),
+    ) -> [Sample<R>; BLOCK_PLACES as usize] {
+        let (first, direction) = (self.place(begin), self.ray.direction);
+        let block = Block { first, direction, step: apart, count, level };
+        let scalars = scalars(self.volume, self.volumes, &block);
+        std::array::from_fn(|k| {
+            let t = begin + R::of_u32(k as u32) * apart;
+            let known = self.volume.kernel != VOLUME_SHEPARD || scalars[k].is_some();
+            let exact = scalars[k].unwrap_or(R::of(0.0)) - R::of_f32(self.volume.iso);
+            let value = if exact == R::of(0.0) { R::of_f32(ON_IT) } else { exact };
+            let side = if value > R::of(0.0) { Side::Above } else { Side::Below };
+            Sample { t, value: if known { value } else { R::of(0.0) }, side: known.then_some(side) }
+        })
     }
 
     /// The first two samples on different sides, of those between the ray's start and `end`. The ray is on
@@ -68,42 +83,66 @@ impl<R: Real> Search<'_, R> {
         let step = R::of_f32(self.volumes.step);
         let steps = (-(R::of(0.5) - (leave - enter) / step).floor()).max(zero);
         let samples = steps.min(R::of(MOST_SAMPLES)).to_u32() + 1;
-        let mut before = Sample { t: enter, value: zero, side: start };
-        let (mut place, mut level) = (0, 0);
-        while place < samples {
-            if !self.volumes.sizes.is_empty() && begins_stretch(level, place) {
-                let x = self.place(enter + R::of_u32(place) * step);
-                level = look_by_size(self.volume, self.volumes, x, 0).level.min(longest_at(place));
-            }
+        let by_size = !self.volumes.sizes.is_empty();
+        let at = |place: u32, level: u32| {
             let half = R::of(0.5) * R::of_u32(1 << level);
-            let t = (enter + (R::of_u32(place) + half) * step).min(leave);
-            let here = self.sample(t, level);
-            match (before.side, here.side) {
-                (Some(a), Some(b)) if a != b => return Some([before, here]),
-                _ => before = here,
+            (enter + (R::of_u32(place) + half) * step).min(leave)
+        };
+        let is_last = |place: u32, level: u32| match by_size {
+            true => at(place, level) >= leave,
+            false => place + 1 >= samples,
+        };
+        let mut before = Sample { t: enter, value: zero, side: start };
+        let (mut first, mut level) = (0, 0);
+        while first < samples {
+            if by_size && begins_stretch(level, first) {
+                let x = self.place(enter + R::of_u32(first) * step);
+                level = look_by_size(self.volume, self.volumes, x, 0).level.min(longest_at(first));
             }
-            let is_last = !self.volumes.sizes.is_empty() && t >= leave;
-            place = if is_last { samples } else { place + (1 << level) };
+            // The end of the way is a block by itself.
+            let is_end = is_last(first, level);
+            let place = |k: u32| first + (k << level);
+            let within = (0..self.volume.block).take_while(|&k| !is_last(place(k), level)).count();
+            let count = within.max(1) as u32;
+            let apart = step * R::of_u32(1 << level);
+            let block = self.block(at(first, level), apart, (count, level));
+            for (k, here) in (0..count).zip(block) {
+                let here = Sample { t: at(place(k), level), ..here };
+                match (before.side, here.side) {
+                    (Some(a), Some(b)) if a != b => return Some([before, here]),
+                    _ => before = here,
+                }
+            }
+            first = if is_end { samples } else { place(count) };
         }
         None
     }
 
-    /// Closes in on the surface between two samples.
+    /// Closes in on the surface between two samples, with a block of places a turn: evenly between them, then close about
+    /// where the straight line between their values is 0.
     fn close_in(&self, [mut low, mut high]: [Sample<R>; 2]) -> R {
-        // Of an end that stays where it is for two turns, half the value counts (Illinois).
-        let mut moved_low = None;
-        for _ in 0..TURNS {
-            let here = self.sample(between(&low, &high), 0);
-            let before = here.side.is_none() || here.side == low.side;
-            let share = R::of(if moved_low == Some(before) { 0.5 } else { 1.0 });
-            if before {
-                low = Sample { side: low.side, ..here };
-                high.value = share * high.value;
-            } else {
-                high = here;
-                low.value = share * low.value;
+        let count = self.volume.block;
+        let turns = if count < BLOCK_PLACES { TURNS_OF_FEW } else { TURNS };
+        let mut narrow = false;
+        for _ in 0..turns {
+            let way = high.t - low.t;
+            let apart = if narrow { way * R::of(NARROWER) } else { way / R::of_u32(count + 1) };
+            let span = R::of_u32(count - 1) * apart;
+            let about = between(&low, &high) - R::of(0.5) * span;
+            let begin = if narrow { low.t.max(about.min(high.t - span)) } else { low.t + apart };
+            let places = &self.block(begin, apart, (count, 0))[..count as usize];
+            let is_beyond = |here: &Sample<R>| here.side.is_some() && here.side != low.side;
+            let beyond = places.iter().position(is_beyond);
+            if let Some(last) = beyond.unwrap_or(places.len()).checked_sub(1) {
+                low = Sample { side: low.side, ..places[last] };
             }
-            moved_low = Some(before);
+            if let Some(beyond) = beyond {
+                high = places[beyond];
+            }
+            if narrow && beyond.is_some_and(|beyond| beyond > 0) {
+                break;
+            }
+            narrow = !narrow && low.value * high.value < R::of(0.0);
         }
         between(&low, &high)
     }
