@@ -39,7 +39,8 @@ use std::sync::Arc;
 const MOST_SAMPLES: f64 = 16_000_000.0;
 /// Powers of two that a weight may be away from 1 in a block.
 const MOST_POWERS: f64 = 100.0;
-/// Cells along the longest axis: more cost more memory than they save samples.
+/// Cells along the longest axis, where there are not twice as many points as cells: more cost more memory than they save
+/// samples.
 const MOST_CELLS: f64 = 160.0;
 
 /// All volumes of a scene, as plain data.

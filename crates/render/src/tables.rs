@@ -263,8 +263,14 @@ impl VolumeBuffers {
         let visible = of("visible lights", lit, points, 4 * VOLUME_LIGHTS as usize)?;
         let table = table
             .buffer(VOLUMES, &Buffer::from_slice(device, "volumes", &volumes.with_sizes())?)
-            .buffer(VOLUME_CELLS, &Buffer::from_slice(device, "volume cells", &volumes.cells)?)
-            .buffer(VOLUME_POINTS, &Buffer::from_slice(device, "volume points", &volumes.points)?)
+            .buffer(
+                VOLUME_CELLS,
+                &Buffer::paged_from_slice(device, "volume cells", &volumes.cells)?,
+            )
+            .buffer(
+                VOLUME_POINTS,
+                &Buffer::paged_from_slice(device, "volume points", &volumes.points)?,
+            )
             .buffer(VOLUME_LENGTHS, &Buffer::from_slice(device, "volume lengths", lengths)?)
             .buffer(VOLUME_STOPS, &Buffer::from_slice(device, "transfer functions", stops)?)
             .buffer(MARCHES, &own.marches)

@@ -10,7 +10,7 @@ use crate::suite_keys::{ROWS, SUITE};
 use std::path::{Path, PathBuf};
 
 /// Names of [`Shape`]s, in their order.
-pub(crate) const SHAPES: [&str; 3] = ["sphere", "torus", "hills"];
+pub(crate) const SHAPES: [&str; 4] = ["sphere", "torus", "hills", "cube"];
 
 /// Names of [`SimulatedScan`]s, in their order.
 pub(crate) const SCANS: [&str; 5] = ["depth", "tls1", "tls3", "tls10", "photo"];
@@ -51,7 +51,7 @@ pub struct SuiteRow {
     pub if_missing: Option<String>,
 }
 
-/// A surface to spread points over.
+/// A surface to spread points over, or a body to fill with them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// Of radius 1 about the origin.
@@ -60,6 +60,8 @@ pub enum Shape {
     Torus,
     /// Over a square of side 1 in the plane y = 0, level where they meet the origin.
     Hills,
+    /// At random in the cube of side 2 about the origin, with a scalar `density`.
+    Cube,
 }
 
 /// A simulated scan of a room.
@@ -126,7 +128,8 @@ fn row_of(row: &Reader<'_>, folder: &Path) -> SuiteRow {
         generate: text("generate").map(|name| match name.as_str() {
             "sphere" => Shape::Sphere,
             "torus" => Shape::Torus,
-            _ => Shape::Hills,
+            "hills" => Shape::Hills,
+            _ => Shape::Cube,
         }),
         point_counts: list(row, "point_counts", count),
         scan: text("scan").map(|name| match name.as_str() {
@@ -228,7 +231,7 @@ over = 'ball'
         assert_eq!(suite, Suite { about: "both kinds".into(), rows: vec![ball, tori, scan] });
         assert_eq!(
             SHAPES,
-            [Shape::Sphere, Shape::Torus, Shape::Hills]
+            [Shape::Sphere, Shape::Torus, Shape::Hills, Shape::Cube]
                 .map(|shape| format!("{shape:?}").to_lowercase())
         );
         for name in SCANS {

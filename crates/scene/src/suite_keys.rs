@@ -65,7 +65,8 @@ pub(crate) static ROWS: Table = Table {
             Words("the scene's own points", "\"torus\""),
             "Even points to be made instead of the first object's: on a sphere of radius 1 about the \
              origin, on a torus about the y axis with radii 1 and 0.4, or on hills over a square of side 1 around the \
-             origin, where they have no height.",
+             origin, where they have no height. Or points at random in the cube of side 2 around the origin, with a \
+             scalar `density` from 0 to 1.",
         ),
         key(
             "point_counts",

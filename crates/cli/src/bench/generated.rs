@@ -1,5 +1,5 @@
-//! Points that are made for a row, in a temporary file: a simulated scan, or even points on a surface, as many as asked
-//! for.
+//! Points that are made for a row, in a temporary file: a simulated scan, or even points on a surface or random ones in a
+//! cube, as many as asked for.
 //!
 //! Point `i` of `n` lies at the golden ratio's multiple around, and at the share `(i + ½) / n` of the
 //! area across: a lattice without clusters or gaps, for any `n`, and the same on every machine.
@@ -60,13 +60,22 @@ pub fn write(path: &Path, made: Made, watch: &dyn Watch) -> Result<(), Failure> 
     let written = match made {
         Made::Even(shape, count) => {
             watch.stage("generating points", u64::from(count));
-            let point = |index| point(shape, index, count).map(|coordinate| coordinate as f32);
-            write_points(path, count, point, watch)
+            let point = |index| point(shape, index, count);
+            let float = |x: f64| x as f32;
+            if shape == Shape::Cube {
+                let with_scalar = |index| {
+                    let p @ [x, y, z] = point(index);
+                    [x, y, z, density(p)].map(float)
+                };
+                write_points(path, count, "property float density\n", with_scalar, watch)
+            } else {
+                write_points(path, count, "", |index| point(index).map(float), watch)
+            }
         }
         Made::Scan(scan) => {
             watch.stage("scanning a room", u64::from(MOST_SCANNED));
             let points = Scan::new(scanner(scan), &Room::new(0), SEED, 1.0).positions();
-            write_points(path, points.len() as u32, |index| points[index as usize], watch)
+            write_points(path, points.len() as u32, "", |index| points[index as usize], watch)
         }
     };
     written.map_err(|error| match error.kind() {
@@ -93,17 +102,19 @@ fn scanner(scan: SimulatedScan) -> Scanner {
     }
 }
 
-fn write_points(
+/// `scalars` says what follows the coordinates.
+fn write_points<const N: usize>(
     path: &Path,
     count: u32,
-    point: impl Fn(u32) -> [f32; 3],
+    scalars: &str,
+    point: impl Fn(u32) -> [f32; N],
     watch: &dyn Watch,
 ) -> io::Result<()> {
     let mut file = BufWriter::new(File::create(path)?);
     write!(
         file,
         "ply\nformat binary_little_endian 1.0\nelement vertex {count}\nproperty float x\n\
-         property float y\nproperty float z\nend_header\n"
+         property float y\nproperty float z\n{scalars}end_header\n"
     )?;
     for index in 0..count {
         if index % BLOCK == 0 {
@@ -112,8 +123,8 @@ fn write_points(
             }
             watch.done(u64::from(index));
         }
-        for coordinate in point(index) {
-            file.write_all(&coordinate.to_le_bytes())?;
+        for number in point(index) {
+            file.write_all(&number.to_le_bytes())?;
         }
     }
     file.flush()
@@ -138,7 +149,21 @@ fn point(shape: Shape, index: u32, count: u32) -> [f64; 3] {
             let [x, z] = [share - 0.5, (GOLDEN * f64::from(index)).fract() - 0.5];
             [x, hills(x, z), z]
         }
+        Shape::Cube => [0, 1, 2].map(|axis| 2.0 * random(3 * u64::from(index) + axis) - 1.0),
     }
+}
+
+/// The same from 0 to 1 for the same number (splitmix64, Steele et al. 2014).
+fn random(number: u64) -> f64 {
+    let mut z = (number + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// Two waves across the cube, from 0 to 1.
+fn density([x, y, z]: [f64; 3]) -> f64 {
+    0.5 + 0.25 * (3.0 * x + y).sin() + 0.25 * (2.0 * y - 4.0 * z).cos()
 }
 
 /// Of no height and no slope at the origin.
@@ -178,6 +203,7 @@ mod tests {
                         Shape::Sphere => x * x + y * y + z * z - 1.0,
                         Shape::Torus => (x.hypot(*z) - 1.0).hypot(*y) - TUBE,
                         Shape::Hills => y - hills(*x, *z),
+                        Shape::Cube => 0.0,
                     };
                     assert!(off.abs() < 1e-12, "{shape:?}: {off}");
                 }
@@ -186,6 +212,26 @@ mod tests {
                 assert!((0.6..1.1).contains(&spacing), "{shape:?}, {count}: {spacing}");
             }
         }
+    }
+
+    /// Points of a cube fill it: of the eight halves of halves, each has its eighth within five deviations.
+    #[test]
+    fn points_in_a_cube_are_at_random_with_a_scalar() {
+        let count = 80_000;
+        let mut eighths = [0; 8];
+        for p in (0..count).map(|i| point(Shape::Cube, i, count)) {
+            assert!(p.iter().all(|x| x.abs() <= 1.0) && (0.0..=1.0).contains(&density(p)));
+            eighths[p.iter().fold(0, |at, &x| 2 * at + usize::from(x > 0.0))] += 1;
+        }
+        let off = 5.0 * (f64::from(count) * 7.0 / 64.0).sqrt();
+        for own in eighths {
+            assert!((f64::from(own) - f64::from(count) / 8.0).abs() < off, "{eighths:?}");
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cube.ply");
+        write(&path, Made::Even(Shape::Cube, 500), &Unwatched).unwrap();
+        let set = points::read(&path, &mut |_, _| {}).unwrap();
+        assert_eq!(set.attribute("density").map(|values| values.iter().count()), Some(500));
     }
 
     /// Half of a torus's area, seen from its axis, lies outside of the circle at 1 + TUBE · 2/π · …:

@@ -31,6 +31,7 @@ const EMBEDDED: &[(&str, &[u8])] = embedded![
     "bench/light.toml",
     "bench/ruler.toml",
     "bench/smoke.toml",
+    "bench/volume.toml",
     "bench/scenes/armadillo.toml",
     "bench/scenes/ball.toml",
     "bench/scenes/bunny.toml",
@@ -38,18 +39,24 @@ const EMBEDDED: &[(&str, &[u8])] = embedded![
     "bench/scenes/bunny-on-hills.toml",
     "bench/scenes/bunny-under-sky.toml",
     "bench/scenes/cloud.toml",
+    "bench/scenes/cube.toml",
     "bench/scenes/horse.toml",
     "bench/scenes/horse-filled.toml",
     "bench/scenes/room.toml",
     "bench/scenes/torus.toml",
+    "combustor.toml",
+    "ironprot.toml",
+    "lox-post.toml",
     "nested-glass.toml",
     "smoke.toml",
+    "stream.toml",
     "images/sky.hdr",
     "images/tiles.png",
     "points/floor.ply",
     "points/slab.ply",
     "points/smoke.ply",
     "points/sphere.ply",
+    "points/stream.ply",
 ];
 
 /// What the command line asks to be timed.
@@ -246,17 +253,26 @@ mod tests {
     #[test]
     fn known_suites_say_what_they_measure() {
         let suites = known();
-        for name in
-            ["cells-per-pass", "landscape", "light", "paper", "ruler", "scaling", "scans", "smoke"]
-        {
+        for name in [
+            "cells-per-pass",
+            "landscape",
+            "light",
+            "paper",
+            "ruler",
+            "scaling",
+            "scans",
+            "smoke",
+            "volume",
+        ] {
             let about = suites.iter().find(|suite| suite.0 == name).map(|suite| suite.1.as_str());
             assert!(about.is_some_and(|about| !about.is_empty()), "{name}: {suites:?}");
         }
         let failure = unknown("papr");
         assert!(failure.lines[0].contains("did you mean 'paper'?"), "{failure:?}");
         assert!(
-            failure.lines[0]
-                .contains("cells-per-pass, landscape, light, paper, ruler, scaling, scans, smoke"),
+            failure.lines[0].contains(
+                "cells-per-pass, landscape, light, paper, ruler, scaling, scans, smoke, volume"
+            ),
             "{failure:?}"
         );
     }

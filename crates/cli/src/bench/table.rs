@@ -22,6 +22,8 @@ const COLUMNS: &[Column] = &[
     ("max", |row| Some(short(row.trace_ms.max))),
     ("frames/s", |row| Some(short(row.frames_per_second))),
     ("paper frames/s", |row| row.paper_frames_per_second.map(short)),
+    ("march ms", |row| kernels_of(row, "march")),
+    ("isosurface ms", |row| kernels_of(row, "isosurface")),
     ("wall ms", |row| Some(short(row.wall_ms.median))),
     ("build ms", |row| Some(short(row.build_ms.median))),
     ("plan + build over", |row| {
@@ -168,6 +170,13 @@ fn heading(report: &Report) -> String {
         "{}{driver}; {}{threads}; pointillist {}{commit}; {runs} after one to warm up{incomplete}",
         report.device, report.cpu, report.version
     )
+}
+
+/// Of the last frame, all kernels of such a name: through volumes, of which a scene may have none.
+fn kernels_of(row: &Row, name: &str) -> Option<String> {
+    let own = row.kernels.iter().filter(|(kernel, _)| kernel.starts_with(name));
+    let ms: Vec<f64> = own.map(|(_, &ms)| ms).collect();
+    (!ms.is_empty()).then(|| short(ms.iter().sum()))
 }
 
 fn some(count: u64) -> Option<String> {

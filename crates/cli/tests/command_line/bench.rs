@@ -135,7 +135,7 @@ fn faults_of_a_suite_are_named_by_line_before_anything_is_timed() {
     for (from, to, words) in [
         ("paper_ms", "paper_fps", &["bad.toml:5:1", "rows[0].paper_fps", "'paper_ms'"][..]),
         ("[1, 0]", "[1, 0.5]", &["bad.toml:10:22", "cells_per_pass[1]", "0.5"]),
-        ("\"torus\"\npoint", "\"cube\"\npoint", &["bad.toml:14:12", "sphere", "torus"]),
+        ("\"torus\"\npoint", "\"cone\"\npoint", &["bad.toml:14:12", "sphere", "torus"]),
         (
             "scene = \"ball.toml\"\npaper",
             "scene = \"bal.toml\"\npaper",
