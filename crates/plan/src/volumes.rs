@@ -51,7 +51,7 @@ pub struct Volumes {
     /// Of volumes whose points reach unevenly, the grids by size, coarsest first: grid, cells, the greatest reach of their
     /// own points, and level.
     pub sizes: Vec<VolumeInfo>,
-    /// Cells of each grid, with one behind the last.
+    /// Cells of each grid, with one after the last.
     pub cells: Vec<VolumeCell>,
     /// Points of each grid by cell, in the order of the file within one.
     pub points: Vec<VolumePoint>,

@@ -12,7 +12,7 @@ pub struct Cells {
     pub origin: [f32; 3],
     pub inverse_edge: f32,
     pub resolution: [usize; 3],
-    /// The first point of each cell, and one behind the last.
+    /// The first point of each cell, and one after the last.
     pub first: Vec<u32>,
     pub x: Vec<f32>,
     pub y: Vec<f32>,

@@ -33,7 +33,7 @@ SCENE has only volumes that emit, of kind \"shepard\", without a boundary, befor
   --packet N   columns and rows of pixels for which points are sought together, a power of two; default: up to 8, within a reach
   --every N    of every N-th column and row, the error against f64; 0: of none; default 4
   --plain      without AVX2
-  --picture    what pointillist rendered of the same scene, whose error is told as well
+  --picture    what pointillist rendered of the same scene, whose error is printed as well
 volume-ruler --write-cube COUNT FILE.ply writes the points of the cubes of `pointillist bench volume`";
 
 struct Args {
