@@ -174,7 +174,10 @@ fn copies_and_strays_change_no_length() {
     let lengths = |positions: &[[f64; 3]]| {
         let set = with_attribute(set_of(positions.to_vec()), "s", |_| 1.0);
         let plan = plan_of(&fog("boundary = \"auto\""), &[set]);
-        (plan.volumes.infos[0].grid.edge, plan.cloud.points.len())
+        // Cells may be as many as points, copies among them; lengths are those of the reaches and steps.
+        let grids = plan.volumes.grids_of(&plan.volumes.infos[0]).iter();
+        let reaches: Vec<_> = grids.map(|grid| (grid.square_radius, grid.level)).collect();
+        (reaches, plan.volumes.step, plan.cloud.points.len())
     };
     assert_eq!(lengths(&half), lengths(&uneven));
 }
