@@ -287,8 +287,8 @@ fn reach_of(
     if is_auto && volume.smoothing.is_some() {
         return Ok(Reach::Even(spacings.mean()));
     }
-    let mut own = spacings.own(positions.len(), || Dimension::of(set).is_volume());
-    if is_auto && !Spacings::is_uneven(&own) {
+    let (mut own, is_uneven) = spacings.own(positions.len(), || Dimension::of(set).is_volume());
+    if is_auto && !is_uneven {
         return Ok(Reach::Even(spacings.mean()));
     }
     // Steps of a quarter of the reach, as many as floats count, through a box that is grown by the greatest reach and a

@@ -61,16 +61,21 @@ impl Spacings {
     }
 
     /// The mean over each point's 16 neighbours of the distance to their 16th, in the order of the positions; where
-    /// points of a volume lie along lines or in sheets, of a set thinned to what is as dense to all sides.
-    pub(super) fn own(&self, positions: usize, is_volume: impl FnOnce() -> bool) -> Vec<f64> {
+    /// points of a volume lie along lines or in sheets, of a set thinned to what is as dense to all sides. And whether those
+    /// of the distinct points differ much.
+    pub(super) fn own(
+        &self,
+        positions: usize,
+        is_volume: impl FnOnce() -> bool,
+    ) -> (Vec<f64>, bool) {
         let plain = smoothed(&self.farthest, &self.lists, self.each);
         let by_slot =
             thinned::reaches(&self.cloud.points, &self.lists, self.each, plain, is_volume);
-        (0..positions).map(|i| by_slot[self.cloud.slot(0, i) as usize]).collect()
+        let own = (0..positions).map(|i| by_slot[self.cloud.slot(0, i) as usize]).collect();
+        (own, Self::is_uneven(&by_slot))
     }
 
-    /// Whether the points' own reaches differ much.
-    pub(super) fn is_uneven(reaches: &[f64]) -> bool {
+    fn is_uneven(reaches: &[f64]) -> bool {
         let mut sorted = reaches.to_vec();
         sorted.sort_unstable_by(f64::total_cmp);
         let at = |part: f64| sorted.get((part * sorted.len() as f64) as usize).copied();
@@ -119,12 +124,12 @@ mod tests {
         };
         let lists: Vec<Vec<usize>> = (0..set.len()).map(nearest).collect();
         let last = |i: usize| distance(set[i], set[lists[i][NEIGHBORS - 1]]);
-        let found = Spacings::of(&set, &Unwatched).unwrap().own(set.len(), || false);
+        let (found, is_uneven) = Spacings::of(&set, &Unwatched).unwrap().own(set.len(), || false);
         for (i, list) in lists.iter().enumerate() {
             let expected = list.iter().map(|&j| last(j)).sum::<f64>() / NEIGHBORS as f64;
             assert!((found[i] - expected).abs() < 1e-6, "{i}: {} for {expected}", found[i]);
         }
-        assert!(Spacings::is_uneven(&found));
+        assert!(is_uneven);
     }
 
     /// Points at random have reaches alike but for chance, and are even; so is a lattice with borders.
@@ -134,8 +139,8 @@ mod tests {
         let lattice: Vec<[f64; 3]> =
             (0..3375).map(|i| [i % 15, i / 15 % 15, i / 225].map(f64::from)).collect();
         for set in [random, lattice] {
-            let own = Spacings::of(&set, &Unwatched).unwrap().own(set.len(), || true);
-            assert!(!Spacings::is_uneven(&own));
+            let (_, is_uneven) = Spacings::of(&set, &Unwatched).unwrap().own(set.len(), || true);
+            assert!(!is_uneven);
         }
         assert!(!Spacings::is_uneven(&[]));
     }
@@ -148,8 +153,8 @@ mod tests {
             .map(|i| [f64::from(i / 200 % 10), f64::from(i / 2000), 0.05 * f64::from(i % 200)])
             .collect();
         let spacings = Spacings::of(&set, &Unwatched).unwrap();
-        let plain = spacings.own(set.len(), || false);
-        let spanning = spacings.own(set.len(), || true);
+        let (plain, _) = spacings.own(set.len(), || false);
+        let (spanning, _) = spacings.own(set.len(), || true);
         let inner: Vec<usize> =
             (0..set.len()).filter(|i| set[*i].iter().all(|x| (2.0..=7.0).contains(x))).collect();
         assert!(inner.iter().all(|&i| plain[i] < 0.45), "half of a column's 16 neighbours");
@@ -157,6 +162,6 @@ mod tests {
             assert!((1.0..2.5).contains(&spanning[i]), "{:?}: {}", set[i], spanning[i]);
         }
         // The same points as a skin keep theirs.
-        assert_eq!(plain, spacings.own(set.len(), || false));
+        assert_eq!(plain, spacings.own(set.len(), || false).0);
     }
 }
